@@ -250,8 +250,11 @@ class StudioWorker {
     settings.progress = &progress;
     settings.record_growth = true;
     settings.scan_memory = scan_memory();
+    // Modules that are required while it plans, as scenes are.
     settings.observe_script = [this](const std::filesystem::path& file) {
       memory_reads_.try_emplace(file.string(), look_of(file));
+      if (file != script_ && is_own_module(file, settings_.scripts))
+        reads_.insert(std::filesystem::weakly_canonical(file).string());
     };
     const std::shared_ptr<Mission> mission = configured_mission(script_, settings, layer);
     MissionResult result = mission->plan();

@@ -100,6 +100,12 @@ int line_in(const std::string& message, const fs::path& script) {
   return line;
 }
 
+bool is_own_module(const fs::path& file, const fs::path& scripts) {
+  const fs::path shipped = fs::weakly_canonical(scripts), whole = fs::weakly_canonical(file);
+  return std::mismatch(shipped.begin(), shipped.end(), whole.begin(), whole.end()).first !=
+         shipped.end();
+}
+
 Value layer_of_page(Value layer, const fs::path& script) {
   if (Value* input = layer.find("input")) input->with_origin({script.string(), 0});
   if (layer.is_map())  // nor does it change the limits of scripts
@@ -137,13 +143,9 @@ Value WorkerErrands::script_files() const {
 Frame WorkerErrands::check(const Frame& asked) {
   files_.clear();
   MissionSettings settings = settings_;
-  const fs::path shipped = fs::weakly_canonical(settings.scripts);
   settings.observe_script = [&](const fs::path& file) {
-    const fs::path whole = fs::weakly_canonical(file);
-    const bool own =
-        std::mismatch(shipped.begin(), shipped.end(), whole.begin(), whole.end()).first !=
-        shipped.end();
-    if (own && file != script_) files_.insert(whole.string());
+    if (file != script_ && is_own_module(file, settings_.scripts))
+      files_.insert(fs::weakly_canonical(file).string());
   };
   const std::unique_ptr<Mission> mission =
       configured_mission(script_, settings, asked.header.at("layer"));

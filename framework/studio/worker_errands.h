@@ -17,6 +17,9 @@ namespace lapwing {
 // "shot.lua:12: ..." is line 12 of the script; 0 where it is of no line of it.
 int line_in(const std::string& message, const std::filesystem::path& script);
 
+// Whether a module of scripts is the user's own, not one that is shipped in `scripts`.
+bool is_own_module(const std::filesystem::path& file, const std::filesystem::path& scripts);
+
 // A layer that a page made of the document, as if the script said it: whoever types a file behind
 // `--set input=` may read it, a page only what the script may.
 Value layer_of_page(Value layer, const std::filesystem::path& script);

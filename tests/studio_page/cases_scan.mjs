@@ -121,9 +121,31 @@ export const scan = (browser, shot) => served(browser, shot, {
   assert.equal((await studioState(page)).document.forbidden.length, 1);
   await page.click("#undo");
   await waitRevision(page, next + 4);
+  await waitGrade(page, "certified", PLANNED);
+  // The budget is dragged: told meanwhile, planned when it is let go of.
+  const slider = await page.$("#budget");
+  await slider.scrollIntoView();
+  const { x: left, y: above, width: wide, height: high } = await slider.boundingBox();
+  const share = await slider.evaluate((e) => (e.value - e.min) / (e.max - e.min));
+  const at = left + 8 + share * (wide - 16);
+  await page.mouse.move(at, above + high / 2);
+  await page.mouse.down();
+  for (let i = 1; i <= 6; ++i) await page.mouse.move(at + 2 * i, above + high / 2);
+  await page.waitForFunction(() => /^About \d+ images/.test(document.querySelector("#estimate").textContent),
+                             { timeout: PLANNED });
+  const estimate = await page.$eval("#estimate", (e) => e.textContent);
+  await picture("scan_08_estimate");
+  assert.equal((await studioState(page)).revision, next + 4);
+  await page.mouse.up();
+  await waitRevision(page, next + 5);
+  await waitGrade(page, "certified", PLANNED);
+  const images = new Set((await page.evaluate(() => window.lapwing.views))
+    .map((view) => JSON.stringify([view.position, view.yaw, view.pitch]))).size;
+  const said = Number(/^About (\d+)/.exec(estimate)[1]);
+  assert.ok(Math.abs(said - images) <= 0.1 * images, `${estimate}, planned ${images}`);
   // Two batteries: two tours, and the second is looked at.
   await type(page, '#flights [data-key="batteries"]', "2");
-  await waitRevision(page, next + 5);
+  await waitRevision(page, next + 6);
   await waitGrade(page, "certified", PLANNED);
   assert.equal((await page.$$("#tour-list .tour")).length, 2);
   const shown = await page.$eval("#view-words", (e) => e.textContent);
@@ -131,7 +153,7 @@ export const scan = (browser, shot) => served(browser, shot, {
   await page.waitForFunction((was) => document.querySelector("#view-words").textContent !== was, {}, shown);
   await picture("scan_07_tours");
   await page.click("#undo");
-  await waitRevision(page, next + 6);
+  await waitRevision(page, next + 7);
   await waitGrade(page, "certified", PLANNED);
   assert.ok(await page.$eval("#tours", (e) => e.hidden));
   // The report is the run's, to the digit.
