@@ -592,27 +592,39 @@ std::string memory_key(const MissionRun& run, const Parameters& given) {
          std::to_string(run.settings.seed);
 }
 
+// How many graphs like this one are kept.
+std::size_t kept_graphs(const ScanWork& work) {
+  constexpr std::size_t kSmall = std::size_t{32} << 20;  // bytes
+  return work.graph.score->bytes() <= kSmall ? 4 : 1;
+}
+
 // run:kept_graph{without =, also =}: graph and prior of the plan before, or nil. With `graph` that
 // one is kept from now on.
 int kept_graph_of_run(lua_State* state) {
   MissionRun& run = run_of(state);
   const Parameters given = table_argument(state, 2, kept_table(), "kept_graph", kKeptObjects);
   if (!run.settings.scan_memory) return 0;
-  ScanMemory& memory = *run.settings.scan_memory;
+  auto& entries = run.settings.scan_memory->entries;
   std::string key = memory_key(run, given);
+  const auto found = std::find_if(entries.begin(), entries.end(),
+                                  [&](const ScanMemory::Entry& entry) { return entry.key == key; });
   lua_getfield(state, 2, "graph");
   if (const auto* graph = test_object<GraphObject>(state, -1, kGraphType)) {
-    memory = {std::move(key), graph->work};
+    if (found != entries.end()) entries.erase(found);
+    entries.push_front({std::move(key), graph->work});
+    if (entries.size() > kept_graphs(*graph->work)) entries.resize(kept_graphs(*graph->work));
     return 0;
   }
-  if (!memory.work || memory.key != key) {
+  if (found == entries.end()) {
     if (run.settings.observe_estimate) throw Cancelled();
-    memory = {};  // its room is needed for the next one
+    // The room of a large one is needed for the next.
+    if (!entries.empty() && kept_graphs(*entries.front().work) == 1) entries.clear();
     return 0;
   }
+  const std::shared_ptr<const ScanWork> work = found->work;
   begin_planning(run);
-  new_object(state, kGraphType, GraphObject{memory.work});
-  new_object(state, kPriorType, PriorObject{memory.work->prior});
+  new_object(state, kGraphType, GraphObject{work});
+  new_object(state, kPriorType, PriorObject{work->prior});
   return 2;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -36,10 +37,14 @@ struct ScanWork;           // scan_objects.h
 struct TourDefinition;
 class MeshScene;
 
-// The graph of views of the last scan that was planned, for a program that plans again and again.
+// Graphs of views of the last scans that were planned, for a program that plans again and again. Of
+// large ones the last alone.
 struct ScanMemory {
-  std::string key;  // what it was made from, as text
-  std::shared_ptr<const ScanWork> work;
+  struct Entry {
+    std::string key;  // what it was made from, as text
+    std::shared_ptr<const ScanWork> work;
+  };
+  std::deque<Entry> entries;  // the newest first
 };
 
 struct MissionSettings {

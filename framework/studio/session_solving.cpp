@@ -294,8 +294,7 @@ void StudioSession::estimated(const Frame& frame) {
   message.set("type", "estimate");
   message.set("edit", static_cast<std::int64_t>(solve_->edit));
   message.set("tab", solve_->tab);
-  for (const char* key : {"tours", "images", "seconds", "known", "seen"})
-    message.set(key, frame.header.at(key));
+  for (const auto& [key, value] : frame.header.at("estimate").as_map()) message.set(key, value);
   tell_all(to_json(message, -1), true);
   solve_->rank = std::max(solve_->rank, 0);
   drag_on();

@@ -218,20 +218,24 @@ class StudioWorker {
     if (!whole_->cancelled()) plan_whole(layer, before);
   }
 
-  // What a drag of budget or batteries comes to: its tours on the graph of the plan before. A drag
-  // that needs another graph is planned when it is let go of.
+  // What a drag of budget or batteries comes to: its tours on the graph of a plan before. A drag that
+  // needs another graph is planned when it is let go of.
   void estimate(const Value& layer) {
-    if (!scan_memory()->work) return;
     MissionSettings settings = settings_;
     settings.cancellation = whole_.get();
-    settings.scan_memory = scan_memory_;
-    settings.observe_estimate = [this](const Value& told) {
-      Frame frame;
-      frame.header = told;
-      frame.header.set("said", "estimate");
-      send(std::move(frame), serial_);
-    };
-    configured_mission(script_, settings, layer)->plan();
+    settings.scan_memory = scan_memory();
+    Value estimate = Value::map();
+    settings.observe_estimate = [&](const Value& told) { estimate = told; };
+    try {
+      if (!settings.scan_memory->entries.empty())
+        configured_mission(script_, settings, layer)->plan();
+    } catch (const Cancelled&) {
+    }
+    if (whole_->cancelled()) return;
+    Frame frame;
+    frame.header.set("said", "estimate");
+    frame.header.set("estimate", std::move(estimate));
+    send(std::move(frame), serial_);
   }
 
   // As `lapwing run` does: what is settled, and what is no problem by itself (times that are
@@ -303,7 +307,7 @@ class StudioWorker {
       return look_of(read.first) != read.second;
     });
     if (changed) {
-      *scan_memory_ = {};
+      scan_memory_->entries.clear();
       memory_reads_.clear();
     }
     return scan_memory_;

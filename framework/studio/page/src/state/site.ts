@@ -102,7 +102,10 @@ export function viewAtTime(views: View[], time: number): number {
   return views.length > 0 ? at : -1;
 }
 
-export function estimateInWords({ tours, images, seconds, known, seen }: Estimate): string {
+export function estimateInWords(
+  { tours = 0, images = 0, seconds = 0, known = 0, seen = 0 }: Estimate,
+): string {
+  if (tours === 0) return "Let go to plan it: there are no views of this state to estimate with.";
   const share = known > 0 ? `${show((100 * seen) / known)} % of the known surface` : "";
   return `About ${images} images in ${show(seconds / 60)} min${
     tours > 1 ? ` of ${tours} tours` : ""}${share ? `, ${share}` : ""}`;

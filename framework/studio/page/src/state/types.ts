@@ -246,11 +246,11 @@ export interface Estimate {
   type: "estimate";
   edit: number;
   tab: string;
-  tours: number;
-  images: number;
-  seconds: number;           // of all tours
-  known: number;             // m^2 of surface
-  seen: number;
+  tours?: number;            // no figures where the views of this state are not at hand
+  images?: number;
+  seconds?: number;          // of all tours
+  known?: number;            // m^2 of surface
+  seen?: number;
 }
 
 // Of a race that is flown by hand.
