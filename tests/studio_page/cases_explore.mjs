@@ -3,7 +3,7 @@
 // it grows; changed by keyboard, flown anew, certified and exported.
 import assert from "node:assert/strict";
 import { statSync } from "node:fs";
-import { studioState, type, waitGrade, waitRevision } from "./browser.mjs";
+import { centreOf, studioState, type, waitGrade, waitRevision } from "./browser.mjs";
 import { served } from "./served.mjs";
 
 const PLANNED = 60000;   // ms at most
@@ -42,6 +42,25 @@ export const explore = (browser, shot) => served(browser, shot, {
   await waitGrade(page, "certified", PLANNED);
   await page.click("#tab-film");
   await page.waitForFunction("/of 10/.test(document.querySelector('#step-figures').textContent)");
+  // Another start by a click in the world, beside the version before.
+  await page.evaluate(() => document.activeElement.blur());
+  await page.keyboard.press("y");
+  await page.waitForSelector("#compare-table td");
+  const { start } = (await studioState(page)).document;
+  await page.click("#place-start");
+  const { x, y } = await centreOf(page, "#world");
+  await page.mouse.click(x - 120, y + 90);
+  await waitRevision(page, revision + 2);
+  const next = (await studioState(page)).document.start;
+  assert.ok(Math.hypot(next[0] - start[0], next[1] - start[1]) > 1, `${next}`);
+  await page.waitForFunction("['certified', 'rejected', 'refused'].includes(window.lapwing.grade)", { timeout: PLANNED });
+  await picture("explore_03_start");
+  assert.match(await page.$eval("#compare-table", (e) => e.textContent), /Surface found.*Efficiency/s);
+  assert.ok(await page.$("#growth-chart .kept"), "the curve of the kept version");
+  await page.click("#undo");
+  await waitRevision(page, revision + 3);
+  await waitGrade(page, "certified", PLANNED);
+  await page.click("#compare-dialog .close");
   await page.click("#export");
   await page.select("#export-format", "csv");
   await page.click("#export-go");

@@ -27,10 +27,10 @@ const most = (list: number[]): number | null => {
 function seenBy({ scan, exploration }: World): Figure[] {
   const figures: Figure[] = [];
   if (exploration) {
-    const { images, surface, efficiency } = exploration;
+    const { images, efficiency } = exploration;
     const found = images[images.length - 1]?.observed ?? 0;
     figures.push({ name: "Images", unit: "", value: images.length },
-                 { name: "Surface found", unit: "%", value: surface > 0 ? (100 * found) / surface : null },
+                 { name: "Surface found", unit: "voxels", value: found },
                  { name: "Efficiency", unit: "", value: efficiency });
   }
   if (scan) {
