@@ -66,7 +66,13 @@ test("after a countdown sticks are sent one at a time, and time rises with frame
   assert.equal(sent.length, 1);
   game.took(raced(0.016), 4040);
   game.frame(4500, () => [[1, 0]]);          // a frame that took long: the game waits for it
-  assert.equal(sent.length, 2);
+  game.took(raced(0.066), 4505);
+  game.frame(4517, () => [[1, 0]]);
+  game.frame(4533, () => [[1, 0]]);          // while the answer is on its way
+  game.took(raced(0.083), 4540);
+  game.frame(4550, () => [[1, 0]]);          // both frames count
+  assert.ok(Math.abs((sent[3]?.[0] ?? 0) - 0.116) < 1e-9, String(sent[3]?.[0]));
+  assert.equal(sent.length, 4);
   assert.ok(Math.abs((sent[1]?.[0] ?? 0) - 0.066) < 1e-9);
 });
 

@@ -152,7 +152,7 @@ export class RaceGamePanel {
     this.view.show(game, ghost, now);
     const { told } = this;
     this.told = null;
-    if (told !== null) this.view.drawn(() => this.seen.push(performance.now() - told));
+    if (told !== null) this.seen.push(performance.now() - told);
     if (game.phase === "over") this.over(message);
   }
 
@@ -205,6 +205,8 @@ export class RaceGamePanel {
     } else if (gameKeys.has(key)) {
       if (!this.held.has(key)) this.pressed ??= performance.now();
       this.held.add(key);
+      // Not only with the next frame.
+      game.frame(performance.now(), (seconds) => this.sticks(seconds));
     } else {
       return;
     }

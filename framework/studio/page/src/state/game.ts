@@ -116,6 +116,8 @@ export class Game {
 
   // Once a frame; `sticks` moves the sticks by these seconds. Returns the seconds left to the start.
   frame(now: number, sticks: (seconds: number) => Stick[]): number {
+    // Time goes on while an answer is waited for.
+    if (this.phase === "flying" && this.sentAt !== null) return 0;
     const seconds = Math.min(LONGEST, Math.max(0, (now - this.last) / 1000));
     this.last = now;
     if (this.phase === "countdown") {
@@ -124,7 +126,7 @@ export class Game {
       this.phase = "flying";
       return 0;
     }
-    if (this.phase !== "flying" || this.sentAt !== null || seconds <= 0 || !this.id) return 0;
+    if (this.phase !== "flying" || seconds <= 0 || !this.id) return 0;
     this.time += seconds;
     if (this.sendStick(this.id, this.time, sticks(seconds))) this.sentAt = now;
     else this.pause("The connection is lost.");

@@ -43,12 +43,14 @@ export class RaceView {
     this.headings = [];
     this.last = 0;
     this.group.visible = true;
+    this.stage.pictured = false;
     camera.fov = 70;
     camera.updateProjectionMatrix();
   }
 
   end(): void {
     this.group.visible = false;
+    this.stage.pictured = true;
     this.stage.split(null);
     const camera = this.stage.worldCamera;
     if (this.before) {
@@ -59,11 +61,6 @@ export class RaceView {
     }
     this.before = null;
     this.stage.invalidate();
-  }
-
-  // Once, when what is shown next has been drawn.
-  drawn(then: () => void): void {
-    this.stage.once(then);
   }
 
   show(game: Game, ghost: Track | null, now: number): void {
@@ -100,7 +97,7 @@ export class RaceView {
       camera.position.set(px - BEHIND * east, py - BEHIND * north, pz + ABOVE);
       camera.lookAt(px + AHEAD * east, py + AHEAD * north, pz);
     });
-    this.stage.invalidate();
+    this.stage.drawNow();
   }
 
   // Where the course leads there, from east; null where it stands still.

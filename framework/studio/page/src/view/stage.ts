@@ -41,6 +41,7 @@ export class Stage {
   private resized: ((width: number, height: number) => void)[] = [];
   measuring = false;
   private beside: THREE.PerspectiveCamera | null = null;
+  pictured = true;                            // whether the film camera's opening is drawn
 
   constructor(
     canvas: HTMLCanvasElement, readonly world: HTMLElement, readonly picture: HTMLElement,
@@ -112,6 +113,11 @@ export class Stage {
     this.invalidate();
   }
 
+  // At once, where every moment counts.
+  drawNow(): void {
+    this.draw();
+  }
+
   invalidate(): void {
     if (this.waiting) return;
     this.waiting = true;
@@ -137,7 +143,7 @@ export class Stage {
     this.through(left, this.worldCamera);
     if (this.beside) this.through(right, this.beside);
     this.tools.visible = false;
-    this.through(this.rects[1], this.filmCamera);
+    if (this.pictured) this.through(this.rects[1], this.filmCamera);
     this.tools.visible = true;
     // The drawing itself is done elsewhere; reading a pixel waits for it.
     if (this.measuring) {
