@@ -249,6 +249,12 @@ std::vector<Viewpoint> free_starts(const std::vector<Parameters>& given, std::si
     throw InputError(entry.origin(), text + why);
   }
   if (starts.empty() && given.empty()) throw InputError("no free start: none is given");
+  const bool hidden = std::any_of(given.begin(), given.end(), [&](const Parameters& entry) {
+    return is_viewless(settings.viewless, viewpoint_of(entry).position);
+  });
+  if (starts.empty() && hidden)
+    throw InputError("no free start: none of " + std::to_string(given.size()) +
+                     " places is free and outside of the balls where views are forbidden");
   if (starts.empty())
     throw InputError("no free start: none of " + std::to_string(given.size()) + " places is free" +
                      (rules.empty() ? "" : " and allowed by the zones and the pilot's sight"));
@@ -529,7 +535,7 @@ constexpr BoundField kGraphFields[] = {
     {"total", "number", "score of full information about all voxels"},
     {"home", "integer", "candidate at which tours begin, from 1"},
     {"joined", "integer", "number of views connected to `home`, including itself"},
-    {"joined_from", "integer[]", "the same of each of the free starts, in their order"},
+    {"joined_from", "integer[]", "the same of each of the free starts, in their order, then of each pinned view"},
     {"reach", "string", "sentence with the number of views connected to the start"},
     {"hidden", "table[]",
      "what zones and the pilot's sight hide: {name, visible, hidden}, m^2 of the known surface; "
@@ -577,7 +583,9 @@ constexpr BoundField kKeptObjects[] = {{"graph?", "lapwing.scan_graph", "graph t
 ParameterTable kept_table() {
   ParameterTable table;
   table.required_text("without", "options that the graph does not depend on, apart by spaces")
-      .text("also", "", "what else it depends on");
+      .text("also", "", "what else it depends on")
+      .boolean("never", false, "true: it is not of a kind that is kept; where only an estimate is "
+               "asked for, the plan ends");
   return table;
 }
 
@@ -594,8 +602,11 @@ std::string memory_key(const MissionRun& run, const Parameters& given) {
 
 // How many graphs like this one are kept.
 std::size_t kept_graphs(const ScanWork& work) {
-  constexpr std::size_t kSmall = std::size_t{32} << 20;  // bytes
-  return work.graph.score->bytes() <= kSmall ? 4 : 1;
+  constexpr std::size_t kSmall = std::size_t{64} << 20;  // bytes
+  std::size_t bytes = work.graph.score->bytes() + work.prior->mapping.map->bytes() +
+                      work.graph.voxels.size() * sizeof(VoxelKey);
+  if (work.pinned_score) bytes += work.pinned_score->bytes();
+  return bytes <= kSmall ? 4 : 1;
 }
 
 // run:kept_graph{without =, also =}: graph and prior of the plan before, or nil. With `graph` that
@@ -604,6 +615,10 @@ int kept_graph_of_run(lua_State* state) {
   MissionRun& run = run_of(state);
   const Parameters given = table_argument(state, 2, kept_table(), "kept_graph", kKeptObjects);
   if (!run.settings.scan_memory) return 0;
+  if (given.boolean("never")) {
+    if (run.settings.observe_estimate) throw Cancelled();
+    return 0;
+  }
   auto& entries = run.settings.scan_memory->entries;
   std::string key = memory_key(run, given);
   const auto found = std::find_if(entries.begin(), entries.end(),
@@ -622,6 +637,7 @@ int kept_graph_of_run(lua_State* state) {
     return 0;
   }
   const std::shared_ptr<const ScanWork> work = found->work;
+  std::rotate(entries.begin(), found, found + 1);
   begin_planning(run);
   new_object(state, kGraphType, GraphObject{work});
   new_object(state, kPriorType, PriorObject{work->prior});

@@ -327,7 +327,7 @@ Frame StudioSession::errand_frame(const PageMessage& message) {
     frame.header.set("layer", settled->layer);
     frame.header.set("folder", settled->folder);
     if (message.tour > settled->further.size())
-      throw InputError("tour: there is no tour " + std::to_string(message.tour));
+      throw InputError("tour: there is no tour " + std::to_string(message.tour + 1));
     if (!settled->further.empty())
       frame.header.set("number", static_cast<std::int64_t>(message.tour + 1));
     frame.parts = {message.tour == 0 ? settled->document : settled->further[message.tour - 1]};
@@ -365,7 +365,10 @@ Frame StudioSession::errand_frame(const PageMessage& message) {
         words.push_back(beside_script(settings_.script, ".studio.yaml").string());
       }
       frame.header.set("words", std::move(words));
-      if (settled_) frame.parts = {settled_->document};
+      if (settled_) {
+        frame.parts = {settled_->document};
+        frame.parts.insert(frame.parts.end(), settled_->further.begin(), settled_->further.end());
+      }
       break;
     }
     case Type::race:

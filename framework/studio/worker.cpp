@@ -177,9 +177,12 @@ class StudioWorker {
     send(std::move(answer), serial);
   }
 
-  // The data files that the mission has read, once it was planned as `lapwing run` does or failed.
+  // The data files that the mission has read, once it was planned as `lapwing run` does or failed;
+  // those too of which graphs are kept that it may not have read again.
   void set_reads(Frame& answer) const {
-    answer.header.set("reads", Value(Value::List(reads_.begin(), reads_.end())));
+    std::set<std::string> all = reads_;
+    all.insert(memory_data_.begin(), memory_data_.end());
+    answer.header.set("reads", Value(Value::List(all.begin(), all.end())));
   }
 
   void send(Frame answer, std::int64_t serial) {
@@ -246,6 +249,7 @@ class StudioWorker {
     const ReadListener listener(
         [this](const std::filesystem::path& file) {
           reads_.insert(file.string());
+          memory_data_.insert(file.string());
           memory_reads_.try_emplace(file.string(), look_of(file));
         });
     MissionSettings settings = settings_;
@@ -257,8 +261,10 @@ class StudioWorker {
     // Modules that are required while it plans, as scenes are.
     settings.observe_script = [this](const std::filesystem::path& file) {
       memory_reads_.try_emplace(file.string(), look_of(file));
-      if (file != script_ && is_own_module(file, settings_.scripts))
-        reads_.insert(std::filesystem::weakly_canonical(file).string());
+      if (file == script_ || !is_own_module(file, settings_.scripts)) return;
+      const std::string whole = std::filesystem::weakly_canonical(file).string();
+      reads_.insert(whole);
+      memory_data_.insert(whole);
     };
     const std::shared_ptr<Mission> mission = configured_mission(script_, settings, layer);
     MissionResult result = mission->plan();
@@ -309,6 +315,7 @@ class StudioWorker {
     if (changed) {
       scan_memory_->entries.clear();
       memory_reads_.clear();
+      memory_data_.clear();
     }
     return scan_memory_;
   }
@@ -444,6 +451,7 @@ class StudioWorker {
   std::string told_world_;
   std::shared_ptr<ScanMemory> scan_memory_ = std::make_shared<ScanMemory>();
   std::map<std::string, std::string> memory_reads_;  // for it, and what they looked like
+  std::set<std::string> memory_data_;                // of them, those that a page watches
   std::set<std::string> reads_;  // of the mission planned last
 
   std::mutex mutex_;  // of what follows

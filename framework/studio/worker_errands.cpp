@@ -341,15 +341,28 @@ Frame WorkerErrands::save_report(const Frame& asked) const {
   const Value* fleet = answer.find("fleet");
   const fs::path folder =
       fs::absolute((fleet ? *fleet : answer.at("plan")).as_text()).parent_path();
-  const fs::path first = folder / (fleet ? fleet_plan_name(0) : "plan.json");
   Value files = Value::list(), loss = Value::list();
+  bool another = false;
+  for (std::size_t t = 0; t < asked.parts.size(); ++t) {
+    const fs::path saved = folder / (fleet ? fleet_plan_name(t) : "plan.json");
+    another = another || !fs::exists(saved) ||
+              trajectory_text(plan_from_value(from_json(asked.parts[t], "plan"))) !=
+                  trajectory_text(read_plan(saved));
+  }
   // Both were planned by the same script from the beginning.
-  if (!asked.parts.empty() && trajectory_text(plan_in(asked)) != trajectory_text(read_plan(first)))
+  if (another)
     loss.push_back(
         "the flight that was saved is another than the one on display: the script or a file that "
-        "it "
-        "reads has changed; reload the studio");
-  for (const char* name : {"report.html", "plan.json", "trajectory.csv", "fleet.json", "run.log"})
+        "it reads has changed; reload the studio");
+  std::vector<std::string> names{"report.html", "plan.json", "trajectory.csv", "fleet.json",
+                                 "run.log"};
+  for (std::size_t t = 0; fleet && t < answer.at("tours").as_list().size(); ++t) {
+    const std::string number = std::to_string(t + 1);
+    names.push_back(fleet_plan_name(t));
+    names.push_back("report_" + number + ".html");
+    names.push_back("trajectory_" + number + ".csv");
+  }
+  for (const std::string& name : names)
     if (fs::exists(folder / name)) files.push_back((folder / name).string());
   frame.header.set("files", std::move(files));
   frame.header.set("loss", std::move(loss));

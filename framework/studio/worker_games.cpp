@@ -15,7 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostGames = 4, kMostPlayers = 8;
+constexpr std::size_t kMostGames = 4;
+constexpr std::size_t kLongestName = 100;  // bytes
 constexpr int kMostFolders = 999;
 
 ParameterTable game_table() {
@@ -44,14 +45,14 @@ std::vector<RacePlayer> players_in(const Value& given) {
                 .reach = one.number("reach"),
                 .speed = one.number("speed"),
                 .handicap = one.number("handicap")};
+    if (pilot.name.empty() || pilot.name.size() > kLongestName)
+      throw InputError("players: a name has 1 to " + std::to_string(kLongestName) + " bytes");
     const bool twice = std::any_of(players.begin(), players.end(), [&](const RacePlayer& p) {
-      return run_folder_name(p.pilot.name) == run_folder_name(pilot.name);
+      return p.pilot.name == pilot.name;
     });
     if (twice) throw InputError("players: two have the name '" + pilot.name + "'");
     players.push_back({std::move(pilot), one.boolean("by_hand")});
   }
-  if (players.size() > kMostPlayers)
-    throw InputError("players: at most " + std::to_string(kMostPlayers) + " race");
   return players;
 }
 
@@ -114,7 +115,11 @@ Frame WorkerGames::begin(const Frame& asked, Plan plan) {
   given.set("players", asked.header.at("players"));
   LiveRace race(plan.trajectory, plan.task.gates, vehicle, players_in(given));
   games_.push_back({asked.header.at("id").as_text(), std::move(plan), std::move(race)});
-  if (games_.size() > kMostGames) games_.pop_front();
+  if (games_.size() > kMostGames) {  // one that is over, if there is one
+    auto oldest = std::find_if(games_.begin(), games_.end(),
+                               [](const Game& game) { return game.last.has_value(); });
+    games_.erase(oldest == games_.end() ? games_.begin() : oldest);
+  }
   Frame frame;
   frame.header.set("said", "done");
   frame.parts.push_back(state_text(games_.back().race, ""));
@@ -126,12 +131,13 @@ Frame WorkerGames::stick(const Frame& asked) {
   const auto found =
       std::find_if(games_.begin(), games_.end(), [&](const Game& game) { return game.id == id; });
   if (found == games_.end())
-    throw InputError("this game is gone: the process that flew it ended; race again");
-  if (found->saved) throw InputError("this game is over");
+    throw InputError(
+        "this game is gone: the process that flew it ended, or too many others began; race again");
+  if (found->last) return *found->last;
   std::vector<Eigen::Vector2d> sticks;
   for (const Value& stick : asked.header.at("sticks").as_list())
     sticks.emplace_back(stick.as_list().at(0).as_number(), stick.as_list().at(1).as_number());
-  found->race.advance(asked.header.at("time").as_number(), sticks);
+  if (!found->race.over()) found->race.advance(asked.header.at("time").as_number(), sticks);
   Frame frame;
   frame.header.set("said", "done");
   if (found->race.over())
@@ -142,14 +148,14 @@ Frame WorkerGames::stick(const Frame& asked) {
 }
 
 void WorkerGames::finish(Game& game, Frame& frame) {
-  game.saved = true;
   const std::vector<RacedPilot> raced = game.race.finish();
   const fs::path folder = game_folder(game.plan.mission);
   NamedContents contents{{"plan.json", plan_text(game.plan)},
                          {"race.html", render_html(race_report(game.plan, raced))}};
   std::string again = "lapwing race plan.json";
   for (std::size_t k = 0; k < raced.size(); ++k) {
-    const std::string log = run_folder_name(raced[k].pilot.name) + ".csv";
+    const std::string log =
+        std::to_string(k + 1) + "_" + run_folder_name(raced[k].pilot.name) + ".csv";
     contents.emplace_back(log, stick_log_text(raced[k].pilot.log));
     again += words_of(game.race.player(k), log);
   }
@@ -159,6 +165,7 @@ void WorkerGames::finish(Game& game, Frame& frame) {
   Value& files = frame.header.set("files", Value::list());
   for (const auto& [file, bytes] : contents) files.push_back((folder / file).string());
   frame.parts.push_back(state_text(game.race, race_result(raced)));
+  game.last = frame;
 }
 
 }  // namespace lapwing

@@ -5,6 +5,7 @@
 
 #include <deque>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "framework/studio/frames.h"
@@ -26,7 +27,7 @@ class WorkerGames {
     std::string id;
     Plan plan;
     LiveRace race;
-    bool saved = false;
+    std::optional<Frame> last = {};  // once it is over and written; told again to who asks again
   };
   void finish(Game& game, Frame& frame);
 

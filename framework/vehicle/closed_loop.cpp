@@ -18,7 +18,6 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double kLost = 100.0;        // m
-constexpr double kTumbling = 0.25;     // s, more than a right angle away from a planned attitude
 constexpr double kBeyondLimit = 1e-9;  // N, of a command, for rounding
 
 // Streams of random numbers that one seed gives.

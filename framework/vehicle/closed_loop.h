@@ -14,6 +14,10 @@
 
 namespace lapwing {
 
+// s: a vehicle whose z axis is more than a right angle away from where it is to be has turned over
+// after so long.
+inline constexpr double kTumbling = 0.25;
+
 struct FlightConditions {
   double wind_mean = 0;   // m/s, along `wind_yaw`
   double wind_gust = 0;   // m/s, standard deviation of each horizontal axis (dryden.h)

@@ -52,7 +52,9 @@ bool LiveRace::over() const {
 double LiveRace::score(std::size_t k) const {
   const RaceFlight& flight = players_[k].race.flight();
   if (flight.samples.empty()) return players_[k].player.pilot.handicap;
-  return score_over_time(flight, course_, gates_, players_[k].player.pilot.handicap, rules_).back();
+  return score_over_time(flight, course_, gates_, players_[k].player.pilot.handicap, rules_,
+                         !players_[k].race.ended())
+      .back();
 }
 
 std::vector<RacedPilot> LiveRace::finish() {

@@ -6,6 +6,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/units.h"
+#include "framework/vehicle/closed_loop.h"
 #include "framework/vehicle/flight_controller.h"
 
 namespace lapwing {
@@ -19,7 +20,6 @@ constexpr double kBehind = 0.3, kAhead = 0.6;  // s of the plan, where progress 
 constexpr double kProgressStep = 0.005;        // s of the plan
 constexpr double kFollow = 5;                  // 1/s, of the reference after the pilot's progress
 constexpr double kAtRest = 0.5;                // m/s
-constexpr double kTumbling = 0.25;             // s, as in closed_loop.cpp
 constexpr double kLastLeg = 1;                 // s of the plan, in which the finish counts
 
 void check(const Pilot& pilot) {

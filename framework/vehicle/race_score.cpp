@@ -80,11 +80,11 @@ RaceScore score_of(const RaceFlight& flight, const Trajectory& course,
 
 std::vector<double> score_over_time(const RaceFlight& flight, const Trajectory& course,
                                     const std::vector<GateTask>& gates, double handicap,
-                                    const RaceRules& rules) {
+                                    const RaceRules& rules, bool under_way) {
   const std::vector<double> passed = passed_at(flight, course, gates);
   // A missed gate is paid for when the next one is passed.
   std::vector<double> paid(gates.size(), flight.time);
-  double next = flight.time;
+  double next = under_way ? HUGE_VAL : flight.time;
   for (std::size_t g = gates.size(); g-- > 0;) {
     paid[g] = next;
     if (!std::isnan(passed[g])) next = passed[g];

@@ -43,9 +43,10 @@ RaceScore score_of(const RaceFlight& flight, const Trajectory& course,
                    const RaceRules& rules = {});
 
 // The score as it stood at each sample, s: what `score_of` would say had the race ended there; a
-// gate counts as missed from when the next one is passed, or the race ends.
+// gate counts as missed from when the next one is passed, or the race ends. `under_way`: it goes on
+// after the last sample, and gates ahead cost nothing yet.
 std::vector<double> score_over_time(const RaceFlight& flight, const Trajectory& course,
                                     const std::vector<GateTask>& gates, double handicap,
-                                    const RaceRules& rules = {});
+                                    const RaceRules& rules = {}, bool under_way = false);
 
 }  // namespace lapwing

@@ -51,6 +51,9 @@ struct Candidates {
   std::int64_t places = 0;                // of them, those that have candidates
 };
 
+// Whether a place lies in one of the balls.
+bool is_viewless(const std::vector<ViewlessBall>& balls, const Eigen::Vector3d& place);
+
 // Places grow from the given viewpoints along the axes, in random order, until there is nothing
 // new. Where they are more than `most` candidates can have, places are left out evenly, so that the
 // farthest corner that the steps led to keeps its share. Each place then has as many views as
@@ -58,9 +61,6 @@ struct Candidates {
 // normal error as wide as half the angle that its box takes. A pitch beyond the camera's limits is
 // drawn again. The same seed gives the same candidates.
 //
-// Whether a place lies in one of the balls.
-bool is_viewless(const std::vector<ViewlessBall>& balls, const Eigen::Vector3d& place);
-
 // InputError: no given viewpoint, one whose box is not free or lies outside `allowed` (naming it),
 // an empty region, settings that make no sense. Cancelled when told to stop.
 Candidates generate_candidates(const FreeSpace& space, const std::vector<Viewpoint>& given,

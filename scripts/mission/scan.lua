@@ -67,6 +67,7 @@ local function graph_of(run, known, vehicle, starts, finish)
     flight = o.flight,
     information = o.information, planner = o.planner,
   }
+  wishes.settle(run, graph)
   if tiles.wanted(run) then
     known:simplify()
     starts = tiles.starts(run, graph, starts, finish)
@@ -78,7 +79,7 @@ local function graph_of(run, known, vehicle, starts, finish)
   graph.needed = (o.start or o.finish or #o.fleet.starts > 0 or o.exploration.images > 0) and finish
     or 0
   graph.fixed = o.start ~= nil or #o.fleet.starts > 0 or o.exploration.images > 0
-  return run:scan_graph(wishes.settle(run, views.settle(run, graph)))
+  return run:scan_graph(views.settle(run, graph))
 end
 
 -- What the mission was asked for, and what could have been had.

@@ -172,6 +172,7 @@ end
 function M.remind(run)
   local o, files = run.options, space.prior_files(run)
   if not (o.scene or o.input) or files and #o.flights == 0 then return end
+  zones.allowed(run, survey_poses(run))
   if not files then warnings[run] = check_range(run) end
   sparse[run] = space.sparse(run)
   if sparse[run] then print("note: " .. sparse[run]) end

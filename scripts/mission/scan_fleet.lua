@@ -224,8 +224,8 @@ function M.plan(run, graph, vehicle, known, explored, begin)
       return solved(run, graph, budget, count)
     end, batteries)
     batteries = #team.tours
-    run:estimate { tours = team.tours }
     wishes.require_all(run, team, graph, string.format("of %d of %.4g s", batteries, budget))
+    run:estimate { tours = team.tours }
     local plans, drones, longest = flown(run, vehicle, team, asked, begin, shared)
     shared = plans[1]
     -- Corners and rests may take a little more than the legs one by one.

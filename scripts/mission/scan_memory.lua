@@ -20,9 +20,10 @@ local function settings(run, graph)
   return { without = LATE, also = tostring(fleet.wanted(run)), graph = graph }
 end
 
--- Graph and prior, or nil.
+-- Graph and prior, or nil. Where only an estimate is asked for, and there is none, the plan ends.
 function M.recall(run, in_passing)
   if possible(run, in_passing) then return run:kept_graph(settings(run)) end
+  return run:kept_graph { without = LATE, never = true }
 end
 
 function M.keep(run, in_passing, graph)

@@ -46,6 +46,45 @@ export function voxelBlob(count) {
   return { bytes, voxels: filled.size };
 }
 
+// A map of so many voxels: until it is drawn, a frame in full (which may take at most so long), a
+// frame while the view moves, and what the page holds.
+async function large(browser, count, most) {
+  const { bytes, voxels } = voxelBlob(count);
+  const mock = await startMock({ world: (put) => ({
+    obstacles: [{ name: "castle", shape: "sphere" }, { name: "map", shape: "map", blob: put(bytes) }],
+    bounds: {} }) });
+  const page = await openPage(browser, mock.address, { wait: false });
+  await page.waitForFunction(() => window.lapwing?.triangles > 50000, { timeout: 60000, polling: 20 });
+  const shown = await page.evaluate(async () => {
+    window.lapwing.measure(true);
+    window.lapwing.redraw();
+    await window.lapwing.drawn();
+    return performance.now();
+  });
+  const frames = (moving) => page.evaluate(async (move) => {
+    const times = [];
+    for (let i = 0; i < 8; ++i) {
+      if (move) window.lapwing.move();
+      else window.lapwing.redraw();
+      times.push(await window.lapwing.drawn());
+    }
+    return times.slice(2);
+  }, moving);
+  await new Promise((then) => setTimeout(then, 600));
+  const full = median(await frames(false));
+  const moving = median(await frames(true));
+  const client = await page.createCDPSession();
+  const heap = await client.send("Runtime.getHeapUsage");
+  const held = (heap.usedSize + (heap.backingStorageSize ?? 0)) / 2 ** 20;
+  await page.close();
+  await mock.stop();
+  const of = `${voxels} voxels`;
+  return [[`${of}: until they are drawn, ms`, shown, 5000],
+          [`${of}: a frame, ms`, full, most ?? Infinity],
+          [`${of}: a frame while the view moves, ms`, moving, 60],
+          [`${of}: memory of scripts, MiB`, held, 1024]];
+}
+
 export async function figures(browser) {
   const { bytes, voxels } = voxelBlob(10000);
   const rows = [];
@@ -93,6 +132,7 @@ export async function figures(browser) {
   rows.push(["a step of scrubbing, ms", median(scrubs), 50]);
   await page.close();
   await mock.stop();
+  rows.push(...await large(browser, 100000, 400), ...await large(browser, 1000000, null));
   let failed = 0;
   for (const [what, value, most] of rows) {
     console.log(`${what.padEnd(44)} ${value.toFixed(1)}   at most ${most}`);

@@ -36,6 +36,7 @@ import { Gizmo } from "./view/gizmo";
 import { Ground } from "./view/ground";
 import { Hulls } from "./view/hulls";
 import { keyframeHere } from "./view/look_through";
+import { Lighter } from "./view/lighter";
 import { Navigation } from "./view/navigate";
 import { Paths } from "./view/paths";
 import { Pick } from "./view/pick";
@@ -99,6 +100,7 @@ studio.on(["look"], () => stage.readPalette());
 const ground = new Ground();
 const solids = new Solids();
 stage.scene.add(ground.group, solids.group);
+new Lighter(stage, solids.opaque);
 const navigation = new Navigation(studio, stage);
 const gizmo = new Gizmo(studio, stage);
 gizmo.controls.addEventListener("dragging-changed", () => {
@@ -313,6 +315,7 @@ Object.defineProperty(window, "lapwing", {
     // Where the curve of speed is at a time, on the page; where the eye is, and how far it sees, m.
     onCurve: (time: number) => timeline.curvePlace(time),
     get eye() { return stage.worldCamera.position.toArray(); },
+    get triangles() { return solids.triangles; },
     get surface() { return scanned.triangles; },
     get views() { return session.world.scan?.views ?? []; },
     get grown() { return explored.count; },
@@ -323,6 +326,7 @@ Object.defineProperty(window, "lapwing", {
     // Resolves when the next frame is drawn.
     drawn: () => new Promise<number>((done) => stage.once(() => done(stage.frameMs))),
     redraw() { stage.invalidate(); },
+    move() { stage.moved(); },
   }),
 });
 

@@ -43,7 +43,7 @@ export class Navigation {
     this.orbit.maxPolarAngle = Math.PI * 0.52;
     this.orbit.minDistance = 1;
     this.orbit.maxDistance = 1500;       // more where the film is larger
-    this.orbit.addEventListener("change", () => stage.invalidate());
+    this.orbit.addEventListener("change", () => stage.moved());
     studio.on(["mode"], () => this.switch());
     studio.on(["look"], () => this.map(studio.map));
     window.addEventListener("gamepadconnected", () => {
@@ -270,6 +270,6 @@ export class Navigation {
     const { forward } = axesOf(this.yaw, this.pitch);
     camera.lookAt(camera.position.x + forward[0], camera.position.y + forward[1],
                   camera.position.z + forward[2]);
-    this.stage.invalidate();
+    this.stage.moved();
   }
 }

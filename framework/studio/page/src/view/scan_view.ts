@@ -8,6 +8,7 @@ import { pathOf } from "../state/samples";
 import { frustum, isSite, prismLines, regionsOf, viewAtTime, viewsOf } from "../state/site";
 import type { ScanWorld, Vec3 } from "../state/types";
 import type { Studio } from "../studio";
+import { Lighter } from "./lighter";
 import { Ribbon } from "./ribbon";
 import { WORLD } from "./solids";
 import type { Stage } from "./stage";
@@ -43,6 +44,7 @@ export class ScanView {
     stage.tools.add(this.candidates);
     this.surface.layers.set(WORLD);
     stage.scene.add(this.surface);
+    new Lighter(stage, this.surface);
     studio.on(["document", "world", "look"], () => this.draw());
     studio.on(["look"], () => this.paint());
     studio.on(["standing"], () => this.drawTours());

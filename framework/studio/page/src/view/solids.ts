@@ -213,6 +213,10 @@ export class Solids {
     return index < 0 ? null : { index, point: [hit.point.x, hit.point.y, hit.point.z] };
   }
 
+  get triangles(): number {
+    return (this.opaque.geometry.getAttribute("position")?.count ?? 0) / 3;
+  }
+
   // Whether some obstacle moves.
   get moving(): boolean {
     return this.movers.visible;

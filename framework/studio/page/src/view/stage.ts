@@ -6,6 +6,8 @@ import { colour } from "./dom";
 
 THREE.ColorManagement.enabled = false;
 
+const STILL = 250;    // ms without a move, after which all is drawn in full
+
 // Colours as they are written, no curves: what the style sheet says is what is seen.
 export interface Palette {
   sky: string;
@@ -34,6 +36,7 @@ export class Stage {
   frames = 0;
   private readonly renderer: THREE.WebGLRenderer;
   private waiting = false;
+  private stillness = 0;
   private whole = new DOMRect();      // of the canvas
   private rects: [DOMRect, DOMRect] = [new DOMRect(), new DOMRect()];
   private beforeFrame: (() => void)[] = [];
@@ -41,6 +44,7 @@ export class Stage {
   private resized: ((width: number, height: number) => void)[] = [];
   measuring = false;
   private beside: THREE.PerspectiveCamera | null = null;
+  moving = false;                             // the eye of the world
   pictured = true;                            // whether the film camera's opening is drawn
 
   constructor(
@@ -110,6 +114,17 @@ export class Stage {
       camera.updateProjectionMatrix();
     }
     for (const then of this.resized) then(width, height);
+    this.invalidate();
+  }
+
+  // The eye moves; a moment later it stands still again.
+  moved(): void {
+    this.moving = true;
+    window.clearTimeout(this.stillness);
+    this.stillness = window.setTimeout(() => {
+      this.moving = false;
+      this.invalidate();
+    }, STILL);
     this.invalidate();
   }
 
