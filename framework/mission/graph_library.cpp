@@ -535,7 +535,8 @@ constexpr BoundField kGraphFields[] = {
     {"total", "number", "score of full information about all voxels"},
     {"home", "integer", "candidate at which tours begin, from 1"},
     {"joined", "integer", "number of views connected to `home`, including itself"},
-    {"joined_from", "integer[]", "the same of each of the free starts, in their order, then of each pinned view"},
+    {"joined_from", "integer[]",
+     "the same of each of the free starts, in their order, then of each pinned view"},
     {"reach", "string", "sentence with the number of views connected to the start"},
     {"hidden", "table[]",
      "what zones and the pilot's sight hide: {name, visible, hidden}, m^2 of the known surface; "
@@ -584,7 +585,8 @@ ParameterTable kept_table() {
   ParameterTable table;
   table.required_text("without", "options that the graph does not depend on, apart by spaces")
       .text("also", "", "what else it depends on")
-      .boolean("never", false, "true: it is not of a kind that is kept; where only an estimate is "
+      .boolean("never", false,
+               "true: it is not of a kind that is kept; where only an estimate is "
                "asked for, the plan ends");
   return table;
 }

@@ -172,7 +172,8 @@ int solve_tour_of_run(lua_State* state) {
   return 1;
 }
 
-constexpr BoundField kEstimateObjects[] = {{"tours", "lapwing.tour[]", "solved tours of one graph"}};
+constexpr BoundField kEstimateObjects[] = {
+    {"tours", "lapwing.tour[]", "solved tours of one graph"}};
 ParameterTable estimate_table() {
   return {};
 }
@@ -225,13 +226,13 @@ void open_scan_library(lua_State* state) {
 }
 
 std::span<const Binding> scan_methods_of_run() {
-  static const Binding own[] = {{"solve_tour", &guarded<solve_tour_of_run>,
-                                 "(settings: @): lapwing.tour", "a tour of views within a budget",
-                                 &tour_table, kTourObjects},
-                                {"estimate", &guarded<estimate_of_run>, "(of: @)",
-                                 "tells what solved tours come to, where only that is asked for: "
-                                 "there the plan ends",
-                                 &estimate_table, kEstimateObjects}};
+  static const Binding own[] = {
+      {"solve_tour", &guarded<solve_tour_of_run>, "(settings: @): lapwing.tour",
+       "a tour of views within a budget", &tour_table, kTourObjects},
+      {"estimate", &guarded<estimate_of_run>, "(of: @)",
+       "tells what solved tours come to, where only that is asked for: "
+       "there the plan ends",
+       &estimate_table, kEstimateObjects}};
   static const std::vector<Binding> all = [] {
     std::vector<Binding> list;
     for (const std::span<const Binding> part :

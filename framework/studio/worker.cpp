@@ -221,8 +221,8 @@ class StudioWorker {
     if (!whole_->cancelled()) plan_whole(layer, before);
   }
 
-  // What a drag of budget or batteries comes to: its tours on the graph of a plan before. A drag that
-  // needs another graph is planned when it is let go of.
+  // What a drag of budget or batteries comes to: its tours on the graph of a plan before. A drag
+  // that needs another graph is planned when it is let go of.
   void estimate(const Value& layer) {
     MissionSettings settings = settings_;
     settings.cancellation = whole_.get();
@@ -246,12 +246,11 @@ class StudioWorker {
   // already.
   void plan_whole(const Value& layer, const std::optional<Trajectory>& before) {
     reads_.clear();
-    const ReadListener listener(
-        [this](const std::filesystem::path& file) {
-          reads_.insert(file.string());
-          memory_data_.insert(file.string());
-          memory_reads_.try_emplace(file.string(), look_of(file));
-        });
+    const ReadListener listener([this](const std::filesystem::path& file) {
+      reads_.insert(file.string());
+      memory_data_.insert(file.string());
+      memory_reads_.try_emplace(file.string(), look_of(file));
+    });
     MissionSettings settings = settings_;
     settings.cancellation = whole_.get();
     WorkerProgress progress([this](Frame told) { send(std::move(told), serial_); });
@@ -309,9 +308,9 @@ class StudioWorker {
 
   // Of the plan before, as long as the script and all that it has read are as they were.
   std::shared_ptr<ScanMemory> scan_memory() {
-    const bool changed = std::any_of(memory_reads_.begin(), memory_reads_.end(), [](const auto& read) {
-      return look_of(read.first) != read.second;
-    });
+    const bool changed =
+        std::any_of(memory_reads_.begin(), memory_reads_.end(),
+                    [](const auto& read) { return look_of(read.first) != read.second; });
     if (changed) {
       scan_memory_->entries.clear();
       memory_reads_.clear();
@@ -452,7 +451,7 @@ class StudioWorker {
   std::shared_ptr<ScanMemory> scan_memory_ = std::make_shared<ScanMemory>();
   std::map<std::string, std::string> memory_reads_;  // for it, and what they looked like
   std::set<std::string> memory_data_;                // of them, those that a page watches
-  std::set<std::string> reads_;  // of the mission planned last
+  std::set<std::string> reads_;                      // of the mission planned last
 
   std::mutex mutex_;  // of what follows
   std::condition_variable changed_;

@@ -8,8 +8,8 @@
 //   solve {layer, settled}   answer {grade, message, seconds} [plan, certificate, document], world;
 //                            of several batteries also {tours}, and of each of them three parts
 //                            more (its plan and document empty where they are those of the first)
-//                            of a drag of a scan: estimate {estimate: {} or {tours, images, seconds,
-//                            known, seen}}
+//                            of a drag of a scan: estimate {estimate: {} or {tours, images,
+//                            seconds, known, seen}}
 //   drop                     the solve under way ends
 //   begin_at                 the next solve begins at the flight of the plan in the first part
 //   check {layer, judge}     checked {document, mission, files} or refused {why, line, files}

@@ -47,9 +47,8 @@ std::vector<RacePlayer> players_in(const Value& given) {
                 .handicap = one.number("handicap")};
     if (pilot.name.empty() || pilot.name.size() > kLongestName)
       throw InputError("players: a name has 1 to " + std::to_string(kLongestName) + " bytes");
-    const bool twice = std::any_of(players.begin(), players.end(), [&](const RacePlayer& p) {
-      return p.pilot.name == pilot.name;
-    });
+    const bool twice = std::any_of(players.begin(), players.end(),
+                                   [&](const RacePlayer& p) { return p.pilot.name == pilot.name; });
     if (twice) throw InputError("players: two have the name '" + pilot.name + "'");
     players.push_back({std::move(pilot), one.boolean("by_hand")});
   }

@@ -32,8 +32,8 @@ class LiveRace {
   std::size_t players() const { return players_.size(); }
   const RacePlayer& player(std::size_t k) const { return players_[k].player; }
   const RaceInProgress& race(std::size_t k) const { return players_[k].race; }
-  // The score as it stands, s; a gate is missed once the next one is passed. Of who has ended, that of
-  // `score_of`.
+  // The score as it stands, s; a gate is missed once the next one is passed. Of who has ended, that
+  // of `score_of`.
   double score(std::size_t k) const;
 
   // Everyone's flight to its end, their sticks in the middle from now on, with logs and scores.

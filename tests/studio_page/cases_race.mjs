@@ -11,7 +11,7 @@ import { served } from "./served.mjs";
 
 const PLANNED = 90000;          // ms at most
 const SEEN = 50;                // ms asked, from a key to the picture
-const SOFTWARE = 250;           // ms allowed where a processor draws
+const BUSY = 120;               // ms allowed here: a processor draws, beside another case
 
 const gameOf = (page) => page.evaluate(() => window.lapwing.game);
 const waitPhase = (page, phase, timeout) =>
@@ -117,8 +117,8 @@ async function playAndReplay(page, picture) {
   const sorted = [...seen].sort((a, b) => a - b);
   const median = sorted[sorted.length >> 1];
   console.log(`        from a key to the picture: ${median.toFixed(0)} ms in the middle of ${
-    seen.length}, ${SEEN} asked`);
-  assert.ok(median < SOFTWARE, String(median));
+    seen.length}; ${SEEN} asked on an idle machine`);
+  assert.ok(median < BUSY, String(median));
   const logs = await page.$$eval("#race-result code", (all) => all.map((e) => e.textContent));
   const again = logs.find((file) => file.endsWith("again.sh"));
   const words = readFileSync(again, "utf8").split("\n").find((line) => line.startsWith("lapwing"));

@@ -57,6 +57,8 @@ test("a view is pinned as the plan has it, moved, let go, or forbidden", () => {
   assert.equal(pinOf(dragged, view), -1);
   assert.deepEqual(after(pinned, pinnedView(pinned, view)).pinned, []);
   assert.deepEqual(after(pinned, deleted(pinned, item)).pinned, []);
+  // However its heading is written.
+  assert.equal(pinOf({ pinned: [{ position: [0, 1.235, 5], yaw_deg: 270, pitch_deg: -28.648 }] }, view), 0);
   // What is forbidden is not pinned any more.
   const without = after(pinned, forbiddenView(pinned, view));
   assert.deepEqual([without.pinned, without.forbidden], [[], [{ position: [0, 1.235, 5], within: 1 }]]);

@@ -46,7 +46,9 @@ export class RaceGamePanel {
       if (lost) this.game?.pause(`The gamepad of ${lost.name} is gone: connect it again.`);
     });
     studio.on(["link"], () => {
-      if (studio.session.link === "lost") this.game?.pause("The connection is lost.");
+      if (studio.session.link !== "lost" || !this.game?.under) return;
+      if (this.game.phase === "starting") this.failed(this.asked ?? "", "The connection was lost.");
+      else this.game.pause("The connection is lost.");
     });
     studio.on(["standing", "document"], () => this.showState());
     studio.session.on((event) => {
@@ -93,6 +95,10 @@ export class RaceGamePanel {
     const { studio } = this;
     const said = byId("race-result");
     this.entrants = [this.entrant(1), this.entrant(2)].filter((one) => one !== null);
+    if (studio.session.link !== "open") {
+      said.textContent = "Not connected: try again in a moment.";
+      return;
+    }
     const used = this.entrants.map(({ device }) => device);
     if (new Set(used).size < used.length) {
       said.textContent = "Two players cannot fly with the same keys or gamepad.";

@@ -127,8 +127,10 @@ export class Game {
       return 0;
     }
     if (this.phase !== "flying" || seconds <= 0 || !this.id) return 0;
+    const told = sticks(seconds);
+    if (!this.flying()) return 0;              // there was no stick to be read
     this.time += seconds;
-    if (this.sendStick(this.id, this.time, sticks(seconds))) this.sentAt = now;
+    if (this.sendStick(this.id, this.time, told)) this.sentAt = now;
     else this.pause("The connection is lost.");
     return 0;
   }
@@ -167,6 +169,10 @@ export class Game {
     this.phase = "countdown";
     this.began = now;
     this.sentAt = null;
+  }
+
+  private flying(): boolean {
+    return this.phase === "flying";
   }
 
   get under(): boolean {

@@ -58,12 +58,17 @@ const degrees = (radians: number): number => {
   return turn > 180 ? turn - 360 : turn;
 };
 
+// Between -180 and 180.
+const turned = (angle: number): number => angle - 360 * Math.round(angle / 360);
+
+const WITHIN = 1;      // m, of a ball without views
+
 // The wish that a view is pinned by, or -1.
 export function pinOf(document: JsonObject, view: View): number {
   return entries(document, "pinned").findIndex((entry) => {
     const place = vec(entry.position);
     return place !== null && Math.hypot(...place.map((v, i) => v - (view.position[i] as number))) < SAME &&
-      Math.abs(Number(entry.yaw_deg) - degrees(view.yaw)) < SAME &&
+      Math.abs(turned(Number(entry.yaw_deg) - degrees(view.yaw))) < SAME &&
       Math.abs(Number(entry.pitch_deg) - degrees(view.pitch)) < SAME;
   });
 }
@@ -80,14 +85,16 @@ export function pinnedView(document: JsonObject, view: View): Edit {
     yaw_deg: degrees(view.yaw), pitch_deg: degrees(view.pitch) }] }] };
 }
 
-// No view is taken within a metre of it any more; a pin there would contradict.
+// No view is taken within a metre of it any more; pins there would contradict.
 export function forbiddenView(document: JsonObject, view: View): Edit {
-  const had = pinOf(document, view);
+  const pinned = entries(document, "pinned");
+  const left = pinned.filter((entry) => {
+    const place = vec(entry.position);
+    return !place || Math.hypot(...place.map((v, i) => v - (view.position[i] as number))) > WITHIN;
+  });
   const patch: Patch = [{ path: "forbidden", value: [...entries(document, "forbidden"), {
-    position: view.position.map((v) => Math.round(v * ROUND) / ROUND), within: 1 }] }];
-  if (had >= 0) {
-    patch.push({ path: "pinned", value: entries(document, "pinned").filter((_, i) => i !== had) });
-  }
+    position: view.position.map((v) => Math.round(v * ROUND) / ROUND), within: WITHIN }] }];
+  if (left.length < pinned.length) patch.push({ path: "pinned", value: left });
   return { label: "Take no view there", patch };
 }
 
