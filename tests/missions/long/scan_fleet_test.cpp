@@ -5,53 +5,13 @@
 #include <set>
 
 #include "framework/core/checksum.h"
-#include "framework/geometry/depth_camera.h"
-#include "framework/map/map_file.h"
 #include "framework/trajectory/interpolate.h"
 #include "framework/vehicle/closed_loop.h"
-#include "tests/map/small_map.h"
 #include "tests/missions/scan_fleet.h"
+#include "tests/missions/seen_in_flight.h"
 
 namespace lapwing {
 namespace {
-
-std::shared_ptr<const Map> map_in(const fs::path& file) {
-  const MapFile read = read_map_file(file);
-  auto map = std::make_shared<SmallMap>(read.resolution);
-  map->import(read.leaves);
-  return map;
-}
-
-// Metres along a ray from a point to the face at which it leaves the point's voxel.
-double way_out(const VoxelGrid& grid, const Eigen::Vector3d& from, const Eigen::Vector3d& way) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 3; ++i) {
-    if (way(i) == 0) continue;
-    const double face = grid.face(grid.index(from(i)) + (way(i) > 0 ? 1 : 0));
-    least = std::min(least, (face - from(i)) / way(i));
-  }
-  return std::max(least, 0.0);
-}
-
-// What one view sees in a map: along every ray from voxel to voxel, none left out.
-void see(const Map& map, const ScanTask& scan, const Eigen::Vector3d& position, double yaw,
-         double pitch, std::set<VoxelKey>& seen) {
-  constexpr double kPastFace = 1e-9;  // m
-  const Pose pose = camera_pose(position, yaw, pitch);
-  for (int y = 0; y < scan.camera.height; ++y)
-    for (int x = 0; x < scan.camera.width; ++x) {
-      const Eigen::Vector3d way = (pose.orientation * pixel_ray(scan.camera, x, y)).normalized();
-      for (double along = 0; along < scan.range;) {
-        const Eigen::Vector3d p = position + along * way;
-        const VoxelKey key = map.grid().key(p);
-        if (map.read(key).state != VoxelState::free) {
-          if (scan.region.contains(map.grid().center(key))) seen.insert(key);
-          break;
-        }
-        along += way_out(map.grid(), p, way) + kPastFace;
-      }
-    }
-}
 
 TEST_F(FleetScans, TwoDronesFlyThreeBatteriesAsOneFleet) {
   ASSERT_EQ(run(kTwoDrones), 0) << error();
@@ -119,19 +79,8 @@ TEST_F(FleetScans, FlownToursSeeTogetherWhatTheFleetPromised) {
   for (const FleetTour& tour : document.tours) {
     const Plan plan = plan_of(tour);
     if (!map) map = map_in(folder_ / "out/map.ot");
-    const FlownPath path = lapwing::fly(plan.trajectory, vehicle_from_value(plan.vehicle));
-    ASSERT_TRUE(path.finished);
-    std::size_t before = flown.size();
-    for (const PlannedView& view : plan.task.scan->views) {
-      see(*map, *plan.task.scan, view.position, view.yaw, view.pitch, planned);
-      const auto sample =
-          std::lower_bound(path.samples.begin(), path.samples.end(), view.time,
-                           [](const FlownSample& s, double time) { return s.time < time; });
-      ASSERT_NE(sample, path.samples.end());
-      const Eigen::Vector3d ahead = sample->state.orientation * Eigen::Vector3d::UnitX();
-      see(*map, *plan.task.scan, sample->state.position, std::atan2(ahead.y(), ahead.x()),
-          sample_at(plan.trajectory, view.time).gimbal_pitch, flown);
-    }
+    const std::size_t before = flown.size();
+    ASSERT_TRUE(see_planned_and_flown(plan, *map, planned, flown));
     EXPECT_GT(flown.size(), before) << "no tour is flown for nothing";
   }
   const double promised = static_cast<double>(document.seen);
