@@ -13,7 +13,8 @@
 
 namespace lapwing {
 
-inline void add_hall_box(TriangleMesh& mesh, const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+inline void add_hall_box(TriangleMesh& mesh, const Eigen::Vector3d& low,
+                         const Eigen::Vector3d& high) {
   const Eigen::AlignedBox3d box(low, high);
   const auto first = static_cast<std::int32_t>(mesh.vertices.size());
   for (int k = 0; k < 8; ++k)

@@ -28,7 +28,8 @@ inline std::shared_ptr<const Map> map_in(const std::filesystem::path& file) {
 }
 
 // Metres along a ray from a point to the face at which it leaves the point's voxel.
-inline double way_out(const VoxelGrid& grid, const Eigen::Vector3d& from, const Eigen::Vector3d& way) {
+inline double way_out(const VoxelGrid& grid, const Eigen::Vector3d& from,
+                      const Eigen::Vector3d& way) {
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 3; ++i) {
     if (way(i) == 0) continue;
