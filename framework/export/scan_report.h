@@ -42,6 +42,7 @@ struct ScanRecord {
   bool surveyed = false;  // map and mesh are of a surveyor's data, not of a first flight
   std::vector<Eigen::Vector3d> first_views;
   std::vector<Eigen::Vector3d> candidates;
+  std::vector<double> alone;                 // score of each candidate by itself
   std::vector<std::pair<int, int>> motions;  // between candidates
   PlannedView shown;                         // one view of the tour
   std::vector<VoxelShare> told;              // what it tells of each voxel, 1 at most

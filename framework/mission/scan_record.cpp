@@ -85,6 +85,8 @@ std::shared_ptr<ScanRecord> begun_record(const ScanWork& work) {
   record->surveyed = work.prior->surveyed;
   for (const Viewpoint& v : work.prior->views) record->first_views.push_back(v.position);
   for (const Viewpoint& v : graph.candidates.viewpoints) record->candidates.push_back(v.position);
+  for (int view = 0; view < graph.score->views(); ++view)
+    record->alone.push_back(graph.score->alone(view));
   for (const ViewMotion& m : graph.motions.motions) record->motions.emplace_back(m.a, m.b);
   record->body_width = 2 * work.body.maxCoeff();
   return record;

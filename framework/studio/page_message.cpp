@@ -123,6 +123,8 @@ void read_tour(MessageFields& fields, PageMessage& message) {
 
 void read_flight(MessageFields& fields, PageMessage& message) {
   constexpr double kStrongest = 100;  // m/s
+  constexpr double kLargestMassError = 0.5;
+  constexpr double kMostRuns = 200;
   read_edit(fields, message);
   const Value& wind = fields.at("wind");
   if (!wind.is_list() || wind.as_list().size() != 3)
@@ -132,6 +134,13 @@ void read_flight(MessageFields& fields, PageMessage& message) {
   if (message.wind[2] != 0) throw InputError("wind: it blows horizontally; the third number is 0");
   if (const Value* gust = fields.find("gust"))
     message.gust = MessageFields::checked(*gust, "gust", 0, kStrongest);
+  if (const Value* mass = fields.find("mass"))
+    message.mass = MessageFields::checked(*mass, "mass", 0, kLargestMassError);
+  if (const Value* runs = fields.find("runs")) {
+    const double number = MessageFields::checked(*runs, "runs", 1, kMostRuns);
+    if (number != std::floor(number)) throw InputError("runs: expected a whole number");
+    message.runs = static_cast<int>(number);
+  }
   message.seed = static_cast<std::uint64_t>(fields.count("seed", 0, kLargestNumber));
   read_tour(fields, message);
 }

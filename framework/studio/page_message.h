@@ -42,6 +42,8 @@ struct PageMessage {
   StudioDocument::Take take = StudioDocument::Take::mine;
   std::array<double, 3> wind{};  // m/s
   double gust = 0;               // m/s
+  double mass = 0;               // largest error, a share
+  int runs = 1;                  // flights
   std::uint64_t seed = 1;
   double time = 0;                  // s; of stick, from the start of the race
   int width = 0, height = 0;        // pixels

@@ -338,6 +338,8 @@ Frame StudioSession::errand_frame(const PageMessage& message) {
       frame.header.set("wind_mean", std::hypot(message.wind[0], message.wind[1]));
       frame.header.set("wind_yaw", std::atan2(message.wind[1], message.wind[0]));
       frame.header.set("wind_gust", message.gust);
+      frame.header.set("mass", message.mass);
+      frame.header.set("runs", std::int64_t{message.runs});
       frame.header.set("seed", static_cast<std::int64_t>(message.seed));
       break;
     case Type::picture:
@@ -424,7 +426,9 @@ void StudioSession::errand_done(Frame frame) {
     message.set("edit", static_cast<std::int64_t>(errand.message.edit));
     for (const char* key : {"lost", "finished", "kept", "worst"})
       message.set(key, frame.header.at(key));
+    if (const Value* runs = frame.header.find("runs")) message.set("runs", *runs);
     raw = ",\"samples\":" + frame.parts.at(0);
+    if (frame.parts.size() > 1) raw += ",\"ways\":" + frame.parts[1];
   } else if (errand.type == Type::picture) {
     message.set("type", "picture");
     message.set("edit", static_cast<std::int64_t>(errand.message.edit));

@@ -27,6 +27,7 @@
 #include "framework/studio/plan_message.h"
 #include "framework/trajectory/fleet.h"
 #include "framework/verify/certificate.h"
+#include "framework/vehicle/monte_carlo.h"
 #include "framework/verify/tolerances.h"
 
 namespace lapwing {
@@ -88,6 +89,44 @@ std::string answer_of_program(const Value::List& given) {
   }
   if (text.empty()) throw Error("the run ended without an answer");
   return text;
+}
+
+// Of the flight alone.
+bool kept(const FlownPath& flown) {
+  return !flown.lost && flown.finished && flown.position_error_worst <= tolerances::kTracking;
+}
+
+// Where each flight was, ten times a second, and how far they were from the plan.
+void tell_runs(const std::vector<SeededRun>& flights, Frame& frame) {
+  constexpr double kBetween = 0.1;  // s
+  std::vector<double> errors;
+  std::int64_t lost = 0, good = 0;
+  std::string ways = "[";
+  for (const SeededRun& run : flights) {
+    errors.push_back(run.path.position_error_worst);
+    lost += run.path.lost;
+    good += kept(run.path);
+    ways += ways.size() > 1 ? ",[" : "[";
+    double next = 0;
+    bool first = true;
+    for (const FlownSample& sample : run.path.samples) {
+      const Eigen::Vector3d& p = sample.state.position;
+      if (sample.time < next - 1e-9 || !p.allFinite()) continue;
+      next = sample.time + kBetween;
+      char text[80];
+      std::snprintf(text, sizeof text, "%s%.3f,%.3f,%.3f", first ? "" : ",", p.x(), p.y(), p.z());
+      ways += text;
+      first = false;
+    }
+    ways += "]";
+  }
+  frame.parts.push_back(ways + "]");
+  Value& told = frame.header.set("runs", Value::map());
+  told.set("count", static_cast<std::int64_t>(flights.size()));
+  told.set("lost", lost);
+  told.set("kept", good);
+  told.set("median", quantile_of(errors, 0.5));
+  told.set("most", quantile_of(errors, 1));
 }
 
 }  // namespace
@@ -178,13 +217,17 @@ Frame WorkerErrands::fly(const Frame& asked) const {
   conditions.wind_yaw = asked.header.at("wind_yaw").as_number();
   conditions.wind_gust = asked.header.at("wind_gust").as_number();
   conditions.seed = static_cast<std::uint64_t>(asked.header.at("seed").as_integer());
-  const FlownPath flown =
-      plan_as_named(plan.trajectory, vehicle, *settings_.registry)->fly(conditions);
+  conditions.mass_error = asked.header.at("mass").as_number();
+  const auto runs = static_cast<int>(asked.header.at("runs").as_integer());
+  const auto controlled = plan_as_named(plan.trajectory, vehicle, *settings_.registry);
+  std::vector<SeededRun> flights;
+  if (runs > 1) flights = fly_runs(*controlled, conditions, runs, settings_.threads);
+  conditions.mass_error = 0;
+  const FlownPath flown = runs > 1 ? flights.front().path : controlled->fly(conditions);
   Frame frame = done();
   frame.header.set("lost", flown.lost);
   frame.header.set("finished", flown.finished);
-  frame.header.set(
-      "kept", !flown.lost && flown.finished && flown.position_error_worst <= tolerances::kTracking);
+  frame.header.set("kept", kept(flown));
   Value& worst = frame.header.set("worst", Value::map());
   worst.set("position_error", flown.position_error_worst);
   worst.set("time", flown.position_error_at);
@@ -192,6 +235,7 @@ Frame WorkerErrands::fly(const Frame& asked) const {
   worst.set("mean", flown.position_error_mean);
   worst.set("rotor_speed", flown.rotor_speed_worst);
   frame.parts.push_back(flown_message(flown, plan.trajectory));
+  if (runs > 1) tell_runs(flights, frame);
   return frame;
 }
 

@@ -124,6 +124,7 @@ Value scan_of(const Plan& plan, const ScanRecord& record, const std::vector<cons
                               task.camera.principal_y}));
   value.set("first_views", places_of(record.first_views));
   value.set("candidates", places_of(record.candidates));
+  value.set("candidate_scores", Value(Value::List(record.alone.begin(), record.alone.end())));
   value.set("seconds", Value(Value::List(record.seconds.begin(), record.seconds.end())));
   value.set("score", Value(Value::List(record.score.begin(), record.score.end())));
   value.set("areas", areas_as_value(record));

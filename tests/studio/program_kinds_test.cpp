@@ -274,6 +274,37 @@ TEST_F(StudioKinds, AnExplorationTellsHowItsMapGrew) {
   EXPECT_EQ(from_json(text, "map info").at("occupied"), Value(std::int64_t{count}));
 }
 
+// Many flights with errors: the first is that of its seed, and each has a way.
+TEST_F(StudioKinds, APlanIsFlownManyTimes) {
+  use("racing/round_course.lua");
+  const StudioAddress address = serve();
+  PageClient page(address, "a");
+  const Value answer = told(page).second;
+  const auto flown = [&](const std::string& more) {
+    page.send_text(R"({"type": "fly", "edit": 1, "wind": [0, 0, 0], "seed": 3)" + more + "}");
+    return page.until([](const Value& m) {
+      return m.at("type") == Value("flown") || m.at("type") == Value("failed");
+    });
+  };
+  const Value many = flown(R"(, "runs": 12, "mass": 0.03)");
+  ASSERT_EQ(many.at("type"), Value("flown")) << to_json(many);
+  const Value& runs = many.at("runs");
+  EXPECT_EQ(runs.at("count"), Value(std::int64_t{12}));
+  EXPECT_GT(runs.at("most").as_number(), runs.at("median").as_number());
+  ASSERT_EQ(many.at("ways").as_list().size(), 12u);
+  const double duration = answer.at("plan").at("duration").as_number();
+  std::set<std::string> ways;
+  for (const Value& way : many.at("ways").as_list()) {
+    EXPECT_NEAR(static_cast<double>(way.as_list().size()) / 3, duration * 10, 15);
+    ways.insert(to_json(way, -1));
+  }
+  EXPECT_EQ(ways.size(), 12u);  // no two masses are equal
+  // The same again; one alone has no ways.
+  EXPECT_EQ(flown(R"(, "runs": 12, "mass": 0.03)"), many);
+  EXPECT_EQ(flown("").find("ways"), nullptr);
+  EXPECT_EQ(flown(R"(, "runs": 1.5)").find("samples"), nullptr);
+}
+
 // Two players fly it, one on the straight way and one aside; of the logs that are left `lapwing
 // race` says the same.
 TEST_F(StudioKinds, ARaceIsFlownByHandAndAgainFromItsLogs) {

@@ -124,6 +124,8 @@ export class FlyDialog {
   private readonly from = byId<HTMLSelectElement>("wind-from");
   private readonly gust = byId<HTMLInputElement>("wind-gust");
   private readonly result = byId("fly-result");
+  private readonly mass = byId<HTMLInputElement>("fly-mass");
+  private readonly runs = byId<HTMLSelectElement>("fly-runs");
   private seed = 0;
   private waiting = false;
 
@@ -131,11 +133,14 @@ export class FlyDialog {
     const say = (): void => {
       byId("wind-value").textContent = `${this.speed.value} m/s (${beaufort(+this.speed.value)})`;
       byId("gust-value").textContent = `${this.gust.value} m/s`;
+      byId("mass-value").textContent = `\u00b1${this.mass.value} %`;
     };
+    this.mass.addEventListener("input", say);
     this.speed.addEventListener("input", say);
     this.gust.addEventListener("input", say);
     say();
     byId("fly-go").addEventListener("click", () => this.send());
+    this.runs.addEventListener("change", () => this.show());
     studio.on(["flown", "standing"], () => this.show());
     studio.session.on((event) => {
       if (this.waiting && event.what === "note" && event.message) {
@@ -161,10 +166,17 @@ export class FlyDialog {
     this.waiting = true;
     this.result.textContent = "Flying\u2026";
     this.studio.session.ask({ type: "fly", edit: this.studio.session.edit, ...this.studio.which, wind,
-                              gust: Number(this.gust.value), seed: this.seed });
+                              gust: Number(this.gust.value), seed: this.seed,
+                              ...this.often() });
+  }
+
+  private often(): { runs?: number; mass?: number } {
+    const runs = Number(this.runs.value);
+    return runs > 1 ? { runs, mass: Number(this.mass.value) / 100 } : {};
   }
 
   private show(): void {
+    byId<HTMLInputElement>("fly-mass").disabled = this.runs.value === "1";
     const { grade } = this.studio.standing;
     byId<HTMLButtonElement>("fly-go").disabled = grade !== "certified";
     byId("fly-warning").hidden = grade === "certified";
@@ -181,7 +193,12 @@ export class FlyDialog {
 }
 
 export function flightText(flown: Flown): string {
-  const { worst } = flown;
+  const { worst, runs } = flown;
+  if (runs) {
+    return `${runs.kept === runs.count ? "\u2713" : "\u2717"} ${runs.kept} of ${runs.count} flights kept ${
+      show(worst?.limit ?? 0)} m${runs.lost > 0 ? `, ${runs.lost} were lost` : ""}. Largest distances: ${
+      show(runs.median, 2)} m in the middle, ${show(runs.most, 2)} m at most.`;
+  }
   if (flown.lost) return "\u2717 The drone was lost. Try less wind, or a gentler film.";
   const off = worst ? `at most ${show(worst.position_error, 2)} m beside the plan, at ${
     show(worst.time ?? 0)} s` : "";

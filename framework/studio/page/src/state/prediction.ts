@@ -56,6 +56,14 @@ export function predictionIn(buffer: ArrayBuffer): Prediction {
 const stops = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
 const UNSEEN = [196, 70, 60], OUTSIDE = [150, 150, 148];
 
+// From violet to yellow by a share of 0 to 1.
+export function colourOf(share: number): number[] {
+  const at = 4 * Math.min(1, Math.max(0, share));
+  const from = Math.min(3, Math.floor(at)), part = at - from;
+  return [0, 1, 2].map((k) => (stops[from]?.[k] as number) * (1 - part) +
+    (stops[from + 1]?.[k] as number) * part);
+}
+
 // Violet is best, yellow worst; of images more are better. Red: no image shows it, or two places are
 // missing. Grey: outside of the region.
 export function shadeOf(prediction: Prediction, figure: Figure, triangle: number): number[] {

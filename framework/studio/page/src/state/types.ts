@@ -163,6 +163,7 @@ export interface ScanWorld {
   image: number[];             // width, height, focal lengths and principal point, pixels
   first_views: Vec3[];
   candidates: Vec3[];
+  candidate_scores?: number[];   // of each by itself
   seconds: number[];
   score: number[];
   areas: JsonObject;
@@ -239,6 +240,8 @@ export interface Flown {
   finished?: boolean;
   kept?: boolean;           // within the tolerance
   worst?: { position_error: number; time?: number; limit?: number; mean?: number } | null;
+  runs?: { count: number; lost: number; kept: number; median: number; most: number };
+  ways?: number[][];        // x, y, z, ... of each run
 }
 
 // What a drag of a scan comes to.

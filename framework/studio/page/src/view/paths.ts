@@ -15,10 +15,15 @@ const shapes: Record<Exclude<Grade, "refused">, Ribbon> = {
   certified: new Ribbon("solid", 4), rejected: new Ribbon("rails", 4),
 };
 
+const placesIn = (way: number[]): Vec3[] =>
+  Array.from({ length: Math.floor(way.length / 3) }, (_, k) =>
+    [way[3 * k], way[3 * k + 1], way[3 * k + 2]] as Vec3);
+
 export class Paths {
   private readonly failing = new Ribbon("hatched", 6);
   private readonly ghost = new Ribbon("dotted", 3);
   private readonly kept = new Ribbon("dashdot", 3);
+  private readonly ways = new Ribbon("thin", 1);     // of many flights
   private readonly stems = segments([]);
   private readonly frame = segments([]);
   private readonly ghostMark = new THREE.Mesh(
@@ -45,7 +50,7 @@ export class Paths {
   }
 
   private all(): Ribbon[] {
-    return [...Object.values(shapes), this.failing, this.ghost, this.kept];
+    return [...Object.values(shapes), this.failing, this.ghost, this.kept, this.ways];
   }
 
   paint(): void {
@@ -58,6 +63,7 @@ export class Paths {
     this.failing.paint(palette.fail);
     this.ghost.paint(palette.flown);
     this.kept.paint(palette.ink);
+    this.ways.paint(palette.flown, 0.35);
     this.stems.material.color.set(palette.step);
     this.frame.material.color.set(palette.ink);
     this.drone.material.color.set(palette.ink);
@@ -86,6 +92,7 @@ export class Paths {
     const flown = columnsOf(this.studio);
     if (flown) this.ghost.set(pathOf(flown), 1);
     else this.ghost.hide();
+    this.ways.setRuns((this.studio.flown?.ways ?? []).map(placesIn), 1);
     this.drawMarker();
   }
 

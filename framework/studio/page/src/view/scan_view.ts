@@ -2,7 +2,7 @@
 // What a scan was planned on and what it will show: region, views, candidates, first flight, and the
 // surface in the colours of what the images will show of it.
 import * as THREE from "three";
-import { figuresInWords, predictionIn, shadeOf, type Prediction } from "../state/prediction";
+import { colourOf, figuresInWords, predictionIn, shadeOf, type Prediction } from "../state/prediction";
 import { baked } from "./solids";
 import { pathOf } from "../state/samples";
 import { frustum, isSite, prismLines, regionsOf, viewAtTime, viewsOf } from "../state/site";
@@ -24,7 +24,7 @@ export class ScanView {
   private readonly others = new Ribbon("thin", 2);   // tours beside the one that is shown
   private readonly candidates = new THREE.Points(
     new THREE.BufferGeometry(),
-    new THREE.PointsMaterial({ size: POINT, sizeAttenuation: false, transparent: true, opacity: 0.7 }));
+    new THREE.PointsMaterial({ size: POINT, sizeAttenuation: false, vertexColors: true }));
   private readonly surface = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshBasicMaterial({
     vertexColors: true, side: THREE.DoubleSide }));
   private light: Float32Array = new Float32Array();
@@ -92,7 +92,6 @@ export class ScanView {
     this.first.paint(palette.step);
     this.others.paint(palette.converged, 0.7);
     this.now.paint(palette.chosen);
-    this.candidates.material.color.set(palette.guess);
     this.tint();
     this.stage.invalidate();
   }
@@ -113,6 +112,11 @@ export class ScanView {
       this.candidates.geometry = new THREE.BufferGeometry();
       this.candidates.geometry.setAttribute("position", new THREE.BufferAttribute(
         Float32Array.from(scan.candidates.flat()), 3));
+      // By what each shows by itself, from little (violet) to most (yellow).
+      const scores = scan.candidate_scores ?? [];
+      const most = scores.reduce((m, v) => Math.max(m, v), 1e-9);
+      this.candidates.geometry.setAttribute("color", new THREE.BufferAttribute(
+        Uint8Array.from(scan.candidates.flatMap((_, k) => colourOf((scores[k] ?? 0) / most))), 3, true));
     }
     this.fetch(scan?.surface ?? "");
     this.stage.invalidate();
