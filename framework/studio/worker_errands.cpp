@@ -26,8 +26,8 @@
 #include "framework/studio/file_look.h"
 #include "framework/studio/plan_message.h"
 #include "framework/trajectory/fleet.h"
-#include "framework/verify/certificate.h"
 #include "framework/vehicle/monte_carlo.h"
+#include "framework/verify/certificate.h"
 #include "framework/verify/tolerances.h"
 
 namespace lapwing {

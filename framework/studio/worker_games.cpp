@@ -89,9 +89,15 @@ std::string stated(double number) {
 
 std::string words_of(const RacePlayer& player, const std::string& log) {
   const Pilot& pilot = player.pilot;
+  // What an argument of a shell, or of --pilot, would take for something else.
+  const bool plain = std::none_of(pilot.name.begin(), pilot.name.end(), [](char c) {
+    return std::string_view("',:=").find(c) != std::string_view::npos || (c >= 0 && c < ' ') ||
+           c == 127;
+  });
   return " --pilot '" + log + ":weight=" + stated(pilot.weight) +
          ",strength=" + stated(pilot.strength) + ",reach=" + stated(pilot.reach) +
-         ",speed=" + stated(pilot.speed) + ",handicap=" + stated(pilot.handicap) + "'";
+         ",speed=" + stated(pilot.speed) + ",handicap=" + stated(pilot.handicap) +
+         (plain ? ",name=" + pilot.name : "") + "'";
 }
 
 // That is not there yet.

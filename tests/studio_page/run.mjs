@@ -23,7 +23,7 @@ const option = (name) => {
   return at < 0 ? null : process.argv[at + 1];
 };
 const only = option("--only"), shots = option("--shots");
-const MOST_SECONDS = 260;
+const MOST_SECONDS = 320;
 
 if (!chromium()) {
   console.log("skipped: no Chromium; apt-get install chromium, or name one in CHROMIUM");
