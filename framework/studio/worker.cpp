@@ -177,12 +177,10 @@ class StudioWorker {
     send(std::move(answer), serial);
   }
 
-  // The data files that the mission has read, once it was planned as `lapwing run` does or failed;
-  // those too of which graphs are kept that it may not have read again.
+  // The data files that the mission has read, also for graphs that are kept: a plan on one of those
+  // does not read them again.
   void set_reads(Frame& answer) const {
-    std::set<std::string> all = reads_;
-    all.insert(memory_data_.begin(), memory_data_.end());
-    answer.header.set("reads", Value(Value::List(all.begin(), all.end())));
+    answer.header.set("reads", Value(Value::List(reads_.begin(), reads_.end())));
   }
 
   void send(Frame answer, std::int64_t serial) {
@@ -245,10 +243,8 @@ class StudioWorker {
   // sought, missions of other kinds), which is drawn when it is done. `before`: what is drawn of it
   // already.
   void plan_whole(const Value& layer, const std::optional<Trajectory>& before) {
-    reads_.clear();
     const ReadListener listener([this](const std::filesystem::path& file) {
       reads_.insert(file.string());
-      memory_data_.insert(file.string());
       memory_reads_.try_emplace(file.string(), look_of(file));
     });
     MissionSettings settings = settings_;
@@ -260,10 +256,8 @@ class StudioWorker {
     // Modules that are required while it plans, as scenes are.
     settings.observe_script = [this](const std::filesystem::path& file) {
       memory_reads_.try_emplace(file.string(), look_of(file));
-      if (file == script_ || !is_own_module(file, settings_.scripts)) return;
-      const std::string whole = std::filesystem::weakly_canonical(file).string();
-      reads_.insert(whole);
-      memory_data_.insert(whole);
+      if (file != script_ && is_own_module(file, settings_.scripts))
+        reads_.insert(std::filesystem::weakly_canonical(file).string());
     };
     const std::shared_ptr<Mission> mission = configured_mission(script_, settings, layer);
     MissionResult result = mission->plan();
@@ -314,7 +308,7 @@ class StudioWorker {
     if (changed) {
       scan_memory_->entries.clear();
       memory_reads_.clear();
-      memory_data_.clear();
+      reads_.clear();
     }
     return scan_memory_;
   }
@@ -450,7 +444,6 @@ class StudioWorker {
   std::string told_world_;
   std::shared_ptr<ScanMemory> scan_memory_ = std::make_shared<ScanMemory>();
   std::map<std::string, std::string> memory_reads_;  // for it, and what they looked like
-  std::set<std::string> memory_data_;                // of them, those that a page watches
   std::set<std::string> reads_;                      // of the mission planned last
 
   std::mutex mutex_;  // of what follows

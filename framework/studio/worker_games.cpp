@@ -9,6 +9,7 @@
 #include "framework/core/parameters.h"
 #include "framework/export/race_report.h"
 #include "framework/export/run_folder.h"
+#include "framework/mission/players.h"
 
 namespace lapwing {
 namespace {
@@ -22,13 +23,8 @@ constexpr int kMostFolders = 999;
 ParameterTable game_table() {
   ParameterTable player;
   player.required_text("name", "name")
-      .boolean("by_hand", true, "false: the stick stays in the middle")
-      .number("weight", 0.5, "", "weight of the stick against the planned acceleration",
-              between(0, 1))
-      .number("strength", 4, "m/s^2", "acceleration of a full deflection", above(0))
-      .number("reach", 3, "m", "displacement across the course that full stick causes", above(0))
-      .number("speed", 1, "", "factor on the reference speed", between(0.1, 3))
-      .number("handicap", 0, "s", "added to the score", between(-3600, 3600));
+      .boolean("by_hand", true, "false: the stick stays in the middle");
+  add_player_numbers(player);
   ParameterTable table;
   table.tables("players", player, "who races", true);
   return table;
@@ -38,13 +34,8 @@ std::vector<RacePlayer> players_in(const Value& given) {
   const Parameters game = check(game_table(), given);
   std::vector<RacePlayer> players;
   for (const Parameters& one : game.tables("players")) {
-    Pilot pilot{.name = one.text("name"),
-                .log = StickLog({StickSample{}}, one.text("name")),
-                .weight = one.number("weight"),
-                .strength = one.number("strength"),
-                .reach = one.number("reach"),
-                .speed = one.number("speed"),
-                .handicap = one.number("handicap")};
+    Pilot pilot{.name = one.text("name"), .log = StickLog({StickSample{}}, one.text("name"))};
+    read_player_numbers(one, pilot);
     if (pilot.name.empty() || pilot.name.size() > kLongestName)
       throw InputError("players: a name has 1 to " + std::to_string(kLongestName) + " bytes");
     const bool twice = std::any_of(players.begin(), players.end(),

@@ -10,17 +10,27 @@ local function angle(name, lowest, highest, summary)
            maximum = highest, summary = summary }
 end
 
+-- A view, as options state it.
+M.POSE = {
+  { name = "position", type = "numbers", size = 3, unit = "m", required = true,
+    summary = "position of the camera" },
+  angle("yaw_deg", -360, 360, "heading of the camera"),
+  angle("pitch_deg", -90, 90, "pitch of the camera, up is positive"),
+}
+
 M.DECLARATION = {
   name = "views", type = "tables",
   summary = "views to photograph, as many as the budget allows; they replace "
     .. "candidates and information, and motions join them whether their images match or not",
-  table = {
-    { name = "position", type = "numbers", size = 3, unit = "m", required = true,
-      summary = "position of the camera" },
-    angle("yaw_deg", -360, 360, "heading of the camera"),
-    angle("pitch_deg", -90, 90, "pitch of the camera, up is positive") } }
+  table = M.POSE }
 
 local NEIGHBOURS = 30  -- views that each one is joined with, whether their images match or not
+
+-- The view with its angles in rad.
+function M.placed(view)
+  return { position = view.position, yaw = math.rad(view.yaw_deg),
+           pitch = math.rad(view.pitch_deg) }
+end
 
 function M.wanted(run) return #run.options.views > 0 end
 
@@ -38,10 +48,7 @@ end
 function M.poses(run, known, poses)
   if not M.wanted(run) then return poses end
   local o, views = run.options, {}
-  for k, view in ipairs(o.views) do
-    views[k] = { position = view.position, yaw = math.rad(view.yaw_deg),
-                 pitch = math.rad(view.pitch_deg) }
-  end
+  for k, view in ipairs(o.views) do views[k] = M.placed(view) end
   local free = known:free_views { views = views, body = zones.body(run), mesh_room = o.mesh_room,
                                   allowed = space.room(run, views) }
   local kept, numbers = {}, {}

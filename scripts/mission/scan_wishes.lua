@@ -5,19 +5,10 @@ local views = require "mission.scan_views"
 
 local M = {}
 
-local function angle(name, lowest, highest, summary)
-  return { name = name, type = "number", unit = "deg", required = true, minimum = lowest,
-           maximum = highest, summary = summary }
-end
-
 M.DECLARATIONS = {
   { name = "pinned", type = "tables",
     summary = "views that the plan takes, whatever they show; the others are chosen around them",
-    table = {
-      { name = "position", type = "numbers", size = 3, unit = "m", required = true,
-        summary = "position of the camera" },
-      angle("yaw_deg", -360, 360, "heading of the camera"),
-      angle("pitch_deg", -90, 90, "pitch of the camera, up is positive") } },
+    table = views.POSE },
   { name = "forbidden", type = "tables", summary = "balls in which no view is chosen; the flight "
     .. "may pass through them, and the start may lie there", table = {
       { name = "position", type = "numbers", size = 3, unit = "m", required = true,
@@ -43,10 +34,7 @@ end
 function M.settle(run, graph)
   local o = run.options
   graph.pinned, graph.viewless = {}, o.forbidden
-  for k, view in ipairs(o.pinned) do
-    graph.pinned[k] = { position = view.position, yaw = math.rad(view.yaw_deg),
-                        pitch = math.rad(view.pitch_deg) }
-  end
+  for k, view in ipairs(o.pinned) do graph.pinned[k] = views.placed(view) end
   return graph
 end
 
