@@ -5,7 +5,6 @@
 
 #include <lua.hpp>
 
-#include "framework/core/json.h"
 #include "framework/core/log.h"
 #include "framework/core/parallel.h"
 #include "framework/core/units.h"
@@ -578,85 +577,10 @@ void open_graph_type(lua_State* state) {
   note_fields(state, kGraphType, kGraphFields);
 }
 
-namespace {
-
-constexpr BoundField kKeptObjects[] = {{"graph?", "lapwing.scan_graph", "graph to be kept"}};
-ParameterTable kept_table() {
-  ParameterTable table;
-  table.required_text("without", "options that the graph does not depend on, apart by spaces")
-      .text("also", "", "what else it depends on")
-      .boolean("never", false,
-               "true: it is not of a kind that is kept; where only an estimate is "
-               "asked for, the plan ends");
-  return table;
-}
-
-// All that a graph depends on.
-std::string memory_key(const MissionRun& run, const Parameters& given) {
-  Value options = run.configuration;
-  const std::string without = " " + given.text("without") + " ";
-  std::erase_if(options.as_map(), [&](const auto& entry) {
-    return without.find(" " + entry.first + " ") != std::string::npos;
-  });
-  return to_json(options, -1) + "\n" + given.text("also") + "\n" +
-         std::to_string(run.settings.seed);
-}
-
-// How many graphs like this one are kept.
-std::size_t kept_graphs(const ScanWork& work) {
-  constexpr std::size_t kSmall = std::size_t{64} << 20;  // bytes
-  std::size_t bytes = work.graph.score->bytes() + work.prior->mapping.map->bytes() +
-                      work.graph.voxels.size() * sizeof(VoxelKey);
-  if (work.pinned_score) bytes += work.pinned_score->bytes();
-  return bytes <= kSmall ? 4 : 1;
-}
-
-// run:kept_graph{without =, also =}: graph and prior of the plan before, or nil. With `graph` that
-// one is kept from now on.
-int kept_graph_of_run(lua_State* state) {
-  MissionRun& run = run_of(state);
-  const Parameters given = table_argument(state, 2, kept_table(), "kept_graph", kKeptObjects);
-  if (!run.settings.scan_memory) return 0;
-  if (given.boolean("never")) {
-    if (run.settings.observe_estimate) throw Cancelled();
-    return 0;
-  }
-  auto& entries = run.settings.scan_memory->entries;
-  std::string key = memory_key(run, given);
-  const auto found = std::find_if(entries.begin(), entries.end(),
-                                  [&](const ScanMemory::Entry& entry) { return entry.key == key; });
-  lua_getfield(state, 2, "graph");
-  if (const auto* graph = test_object<GraphObject>(state, -1, kGraphType)) {
-    if (found != entries.end()) entries.erase(found);
-    entries.push_front({std::move(key), graph->work});
-    if (entries.size() > kept_graphs(*graph->work)) entries.resize(kept_graphs(*graph->work));
-    return 0;
-  }
-  if (found == entries.end()) {
-    if (run.settings.observe_estimate) throw Cancelled();
-    // The room of a large one is needed for the next.
-    if (!entries.empty() && kept_graphs(*entries.front().work) == 1) entries.clear();
-    return 0;
-  }
-  const std::shared_ptr<const ScanWork> work = found->work;
-  std::rotate(entries.begin(), found, found + 1);
-  begin_planning(run);
-  new_object(state, kGraphType, GraphObject{work});
-  new_object(state, kPriorType, PriorObject{work->prior});
-  return 2;
-}
-
-}  // namespace
-
 std::span<const Binding> graph_methods_of_run() {
   static const Binding methods[] = {
       {"scan_graph", &guarded<scan_graph_of_run>, "(settings: @): lapwing.scan_graph",
        "candidate views of a region, and motions between them", &graph_table, kGraphObjects},
-      {"kept_graph", &guarded<kept_graph_of_run>,
-       "(settings: @): lapwing.scan_graph?, lapwing.prior?",
-       "graph and prior of the plan before, if it was made from the same options; nil where plans "
-       "are made once. With `graph`, that one is kept",
-       &kept_table, kKeptObjects},
       {"tile_views", &guarded<tile_views_of_run>, "(settings: @): table[]",
        "views of one tour over a part of a large region: {position, yaw, pitch}; none where "
        "nothing is free, or nothing is seen",

@@ -237,8 +237,8 @@ std::span<const Binding> scan_methods_of_run() {
     std::vector<Binding> list;
     for (const std::span<const Binding> part :
          {prism_methods_of_run(), flight_rule_methods_of_run(), graph_methods_of_run(),
-          std::span<const Binding>(own), pass_methods_of_run(), prior_methods_of_run(),
-          scan_plan_methods_of_run()})
+          graph_memory_methods_of_run(), std::span<const Binding>(own), pass_methods_of_run(),
+          prior_methods_of_run(), scan_plan_methods_of_run()})
       list.insert(list.end(), part.begin(), part.end());
     return list;
   }();

@@ -123,6 +123,7 @@ std::span<const Binding> scan_methods_of_run();
 
 // The parts of that list.
 std::span<const Binding> graph_methods_of_run();
+std::span<const Binding> graph_memory_methods_of_run();
 std::span<const Binding> prior_methods_of_run();
 std::span<const Binding> scan_plan_methods_of_run();
 std::span<const Binding> pass_methods_of_run();
