@@ -120,6 +120,7 @@ const std::vector<CommandExamples>& command_examples() {
       {"lapwing train dataset",
        {"lapwing train dataset --world suburb:1-4 --episodes 2 -o samples"},
        kOfStudies},
+      {"lapwing train all", {"lapwing train all -o my.model --hours 1"}, kOfStudies},
       {"lapwing train fit",
        {"lapwing train fit samples --validation samples_of_others -o model.json"},
        kOfStudies},

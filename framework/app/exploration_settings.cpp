@@ -33,7 +33,7 @@ WorldRecords records_of(const std::vector<WorldName>& worlds,
   for (const std::string& utility : utilities) {
     const fs::path library = registry.find("utility", utility).library;
     keep(utility + ".library", library);
-    keep(utility, fs::path(library).replace_extension("model"));
+    keep(utility, library.parent_path() / (utility + ".model"));
     const Value* given = parameters.find(utility);
     if (!given || !given->is_map()) continue;
     for (const auto& [key, value] : given->as_map())

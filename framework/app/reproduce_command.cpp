@@ -56,7 +56,7 @@ class Places {
     if (kind == "study") return (studies_ / name).string();
     if (kind == "model") {
       const fs::path library = registry_.find(ViewUtility::kKind, name).library;
-      return fs::path(library).replace_extension("model").string();
+      return (library.parent_path() / (name + ".model")).string();
     }
     if (kind == "data") return data_file(name);
     return "{" + text + "}";  // a table of YAML's, such as --set region={...}

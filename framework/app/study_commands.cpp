@@ -205,6 +205,25 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
             [&](std::uint64_t count) { request.episodes = static_cast<std::int64_t>(count); });
   add_count(*dataset, "--steps", 1, 100'000, "images per episode; default: 200",
             [&](std::uint64_t count) { request.steps = static_cast<int>(count); });
+  add_text(*dataset, "--sigma", "M",
+           "depth noise in m; the oracle's values are without it; default: 0",
+           [&](const std::string& text) { request.sigma = read_within("--sigma", text, 100); });
+  add_text(*dataset, "--dropped", "SHARE", "fraction of pixels without a measurement; default: 0",
+           [&](const std::string& text) { request.dropped = read_within("--dropped", text, 1); });
+  CLI::App* all = add("all", "train a model from nothing by a recipe: samples and fits in rounds");
+  add_text(*all, "-o,--output", "PATH", "the model's file", [&](const std::string& path) {
+    request.target = path;
+  })->required();
+  add_text(*all, "--hours", "H",
+           "time that may be used, in hours of two idle cores; default: 6, all of the recipe",
+           [&](const std::string& text) { request.hours = read_number("--hours", text); });
+  add_text(*all, "--recipe", "FILE", "another recipe; default: that of the utility",
+           [&](const std::string& path) { request.recipe = path; });
+  add_repeated(*all, "--mapping", "KEY=VALUE", request.mapping, kMappingHelp);
+  add_seed(*all, invocation.seed, "seed of all random numbers; default: 1");
+  all->add_flag("--resume", request.resume, "continue an interrupted run");
+  add_json(*all, invocation);
+  all->add_flag("--quiet", invocation.quiet, "no lines of progress");
   CLI::App* fit = add("fit", "train a model");
   add_making(*fit, "the model's file");
   fit->add_flag("--resume", request.resume, "continue an interrupted run");
@@ -216,6 +235,7 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
     request.model = path;
   })->required();
   add_samples(*score);
+  all->callback([&] { command = [&] { return train_all(request, invocation); }; });
   dataset->callback([&] { command = [&] { return make_dataset(request, invocation); }; });
   fit->callback([&] { command = [&] { return fit_model(request, invocation); }; });
   score->callback([&] { command = [&] { return score_model(request, invocation); }; });

@@ -43,25 +43,27 @@ std::string file_name(const std::string& world, std::int64_t episode) {
 SampleSet sampled_episode(const World& world, const GroundTruth& truth,
                           const ExplorationSetup& setup, const Registry& registry,
                           const std::string& explorer, const Value& parameters,
-                          const Value& made_by, const GridShape& shape, std::int64_t episode,
+                          const Value& made_by, const ViewInput& input, std::int64_t episode,
                           std::uint64_t seed) {
   SampleSet samples;
   samples.world = world.name;
   samples.episode = episode;
   samples.made_by = made_by;
-  samples.shape = shape;
+  samples.input = input;
   const auto utility = registry.create<ViewUtility>(explorer, parameters, explorer);
   const auto new_map = setup.new_map(registry);
   Random random = Random(seed).split(static_cast<std::uint64_t>(episode));
   ObservedSurface observed(truth, setup.episode.sensor, new_map);
   const std::unique_ptr<Map> map = new_map();
-  std::vector<float> grid(shape.size());
+  std::vector<float> numbers(numbers_of(input)), parts(targets_of(input));
   const auto keep = [&](const EpisodeMoment& moment) {
     if (samples.mapping.is_null()) samples.mapping = mapping_of(moment.known);
-    moment.known.means->refresh(shape.levels);
+    if (const auto* grid = std::get_if<GridShape>(&input))
+      moment.known.means->refresh(grid->levels);
     for (const Viewpoint& view : moment.neighbours) {
-      sample_grid(moment.known, view, shape, grid);
-      samples.add(grid, observed.gain(view));
+      sample_view(moment.known, view, input, numbers);
+      view_targets(observed, view, moment.known.pinhole, input, parts);
+      samples.add(numbers, parts);
     }
   };
   try {
@@ -97,7 +99,7 @@ bool has_samples(const TrainRequest& request, const std::string& world, std::int
 
 // What samples are made of, the same in every process.
 struct Dataset {
-  GridShape shape;
+  ViewInput input;
   std::vector<WorldName> worlds;
   Value explorer = Value::map();         // its parameters
   std::vector<Value> made_by;            // by world: what its files state
@@ -108,8 +110,8 @@ Dataset dataset_of(const TrainRequest& request, const Invocation& invocation,
                    const Registry& registry, const CancellationToken& cancellation) {
   Dataset dataset;
   const Trainable& trainable = trainable_of(registry, request.utility);
-  dataset.shape =
-      trainable.sample_shape(training_parameters(trainable.sample_parameters(), invocation));
+  dataset.input =
+      trainable.sample_input(training_parameters(trainable.sample_parameters(), invocation));
   dataset.worlds = distinct_worlds(request.worlds, "train dataset");
   for (const WorldName& name : dataset.worlds) require_world(name, request.up);
   ExplorationSetup setup;
@@ -118,6 +120,8 @@ Dataset dataset_of(const TrainRequest& request, const Invocation& invocation,
   const Value moves = setup.set_moves(request.moves);
   setup.episode.show_truth = needs_truth(registry, request.explorer);
   setup.episode.cancellation = &cancellation;
+  if (request.sigma > 0 || request.dropped > 0)
+    setup.episode.sensor.noise = DepthNoise{request.dropped, request.sigma};
   for (const std::string& text : request.explorer_overrides)
     apply_override(dataset.explorer, text, "--explorer-set");
   registry.create<ViewUtility>(request.explorer, dataset.explorer, request.explorer);  // may refuse
@@ -138,7 +142,9 @@ Dataset dataset_of(const TrainRequest& request, const Invocation& invocation,
     made.set("moves", own ? *own : moves);
     made.set("mapping", mapping);
     made.set("up", request.up);
-    made.set("grid", to_value(dataset.shape));
+    made.set("sigma", request.sigma);
+    made.set("dropped", request.dropped);
+    made.set("input", to_value(dataset.input));
     made.set("files", records.files);
     dataset.made_by.push_back(std::move(made));
   }
@@ -183,7 +189,7 @@ class SampledEpisodes {
       const SampleSet set =
           sampled_episode(used.world, used.truth, dataset_.setups[world], registry_,
                           request_.explorer, dataset_.explorer, dataset_.made_by[world],
-                          dataset_.shape, episode_of(item), invocation_.seed);
+                          dataset_.input, episode_of(item), invocation_.seed);
       if (cancellation_.cancelled()) throw Cancelled();
       write_samples(set, request_.target / file_name(name_of(world), episode_of(item)));
     };
@@ -282,7 +288,8 @@ ExitStatus score_model(const TrainRequest& request, const Invocation& invocation
     const Prediction predicted = trainable.predict(request.model, set, invocation.threads);
     OneWorld& world = worlds[set.world];
     world.predicted.insert(world.predicted.end(), predicted.values.begin(), predicted.values.end());
-    world.targets.insert(world.targets.end(), set.targets.begin(), set.targets.end());
+    const std::vector<float> gains = set.gains();
+    world.targets.insert(world.targets.end(), gains.begin(), gains.end());
     world.squares += predicted.loss * static_cast<double>(set.size());
   }
   Value object = Value::map();

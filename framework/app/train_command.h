@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// lapwing train dataset|fit|score
+// lapwing train all|dataset|fit|score
 #pragma once
 
 #include "framework/app/item_command.h"
@@ -20,12 +20,18 @@ struct TrainRequest {
   std::vector<std::filesystem::path> validation;  // fit: likewise, of other worlds or episodes
   std::filesystem::path target;                   // dataset: a folder; fit: a model
   std::filesystem::path model;                    // score
-  bool resume = false;                            // fit
+  bool resume = false;                            // fit, all
+  double sigma = 0, dropped = 0;                  // dataset: noise of the depth camera, m and share
+  std::filesystem::path recipe;                   // all; empty: the shipped one
+  double hours = 6;                               // all: share of the recipe's seeds
   ItemOptions items;                              // dataset: an item is an episode
 };
 
 // Episodes of the oracle, each a file of samples; with `resume` those that are there are kept.
 ExitStatus make_dataset(const TrainRequest& request, const Invocation& invocation);
+// All of a recipe (study/training_recipe.h): samples and fits in MODEL.training, the model, and
+// its figures by round beside it.
+ExitStatus train_all(const TrainRequest& request, const Invocation& invocation);
 // Writes the model, and MODEL.checkpoint after every epoch.
 ExitStatus fit_model(const TrainRequest& request, const Invocation& invocation);
 // Spearman's rho and the loss of (5.4) per world.

@@ -300,6 +300,15 @@ double ObservedSurface::gain(const Viewpoint& view) const {
   return sum;
 }
 
+void ObservedSurface::each_gain(
+    const Viewpoint& view,
+    const std::function<void(const Eigen::Vector3d& p_W, double gain)>& visit) const {
+  const std::shared_ptr<const Sight> sight = sight_of(view);
+  for (const std::uint32_t k : *sight)
+    visit(truth_->grid().center(truth_->surface()[k]),
+          (1 - std::exp(-eta_)) * std::exp(-eta_ * static_cast<double>(counts_[k])));
+}
+
 // -- starts --------------------------------------------------------------------------------------
 
 bool GroundTruth::box_blocked(const Eigen::AlignedBox3d& box) const {

@@ -122,6 +122,9 @@ class ObservedSurface final : public TrueGain {
 
   double observed() const { return observed_; }  // ObsSurf
   double gain(const Viewpoint& view) const override;
+  // The parts of that sum: calls `visit(middle of a voxel, its part)`, m, world. Thread-safe.
+  void each_gain(const Viewpoint& view,
+                 const std::function<void(const Eigen::Vector3d& p_W, double gain)>& visit) const;
 
  private:
   using Sight = std::vector<std::uint32_t>;  // places in the surface

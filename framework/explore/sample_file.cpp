@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 #include <set>
 
 #include "framework/core/checksum.h"
@@ -15,18 +16,28 @@
 namespace lapwing {
 namespace {
 
-constexpr std::string_view kMagic = "lapwing samples 3\n";
+constexpr std::string_view kMagic = "lapwing samples 4\n";
 constexpr std::size_t kMostBytes = std::size_t{4} << 30;
 
 }  // namespace
 
-void SampleSet::add(std::span<const float> grid, double target) {
-  if (grid.size() != shape.size()) throw Error("a sample of another shape");
-  for (const float value : grid) {
-    if (!(value >= -1e-4f && value <= 1 + 1e-4f)) throw Error("a grid with a value outside 0 to 1");
-    grids.push_back(static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255)));
+void SampleSet::add(std::span<const float> numbers, std::span<const float> parts) {
+  if (numbers.size() != numbers_of(input) || parts.size() != targets_of(input))
+    throw Error("a sample of another shape");
+  for (const float value : numbers) {
+    if (!(value >= -1e-4f && value <= 1 + 1e-4f)) throw Error("an input outside 0 to 1");
+    inputs.push_back(static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255)));
   }
-  targets.push_back(static_cast<float>(target));
+  targets.insert(targets.end(), parts.begin(), parts.end());
+}
+
+std::vector<float> SampleSet::gains() const {
+  const std::size_t each = targets_of(input);
+  std::vector<float> sums;
+  for (std::size_t k = 0; k < targets.size(); k += each)
+    sums.push_back(std::accumulate(targets.begin() + static_cast<std::ptrdiff_t>(k),
+                                   targets.begin() + static_cast<std::ptrdiff_t>(k + each), 0.0f));
+  return sums;
 }
 
 void write_samples(const SampleSet& samples, const std::filesystem::path& path) {
@@ -35,12 +46,12 @@ void write_samples(const SampleSet& samples, const std::filesystem::path& path) 
   header.set("episode", samples.episode);
   header.set("made_by", samples.made_by);
   header.set("samples", static_cast<std::int64_t>(samples.size()));
-  header.set("grid", to_value(samples.shape));
+  header.set("input", to_value(samples.input));
   header.set("mapping", samples.mapping);
-  const std::size_t numbers = samples.size() * sizeof(float);
-  std::string data(numbers + samples.grids.size(), '\0');
+  const std::size_t numbers = samples.targets.size() * sizeof(float);
+  std::string data(numbers + samples.inputs.size(), '\0');
   std::memcpy(data.data(), samples.targets.data(), numbers);
-  std::memcpy(data.data() + numbers, samples.grids.data(), samples.grids.size());
+  std::memcpy(data.data() + numbers, samples.inputs.data(), samples.inputs.size());
   header.set("sha256", sha256(data));
   write_file_atomically(path, std::string(kMagic) + to_json(header, -1) + '\n' + data);
 }
@@ -52,7 +63,7 @@ SampleSet read_samples(const std::filesystem::path& path) {
                       "; delete it or leave it out");
   };
   if (bytes.starts_with("lapwing samples ") && !bytes.starts_with(kMagic))
-    throw InputError("'" + path.string() + "' is of another format than 3, which this program " +
+    throw InputError("'" + path.string() + "' is of another format than 4, which this program " +
                      "reads: make its samples again, in another folder");
   if (!std::string_view(bytes).starts_with(kMagic)) throw refuse("another first line");
   const std::size_t line = bytes.find('\n', kMagic.size());
@@ -66,25 +77,26 @@ SampleSet read_samples(const std::filesystem::path& path) {
   samples.episode = fields.integer("episode");
   samples.made_by = fields.opaque("made_by");
   const std::int64_t count = fields.integer("samples");
-  const Value grid = fields.opaque("grid");
+  const Value input = fields.opaque("input");
   samples.mapping = fields.opaque("mapping");
   const std::string sum = fields.text("sha256");
   fields.finish();
   errors.throw_if_any();
-  samples.shape = grid_shape_from(grid);
+  samples.input = view_input_from(input);
   const std::size_t begin = line + 1, rest = bytes.size() - begin;
-  const std::size_t each = sizeof(float) + samples.shape.size();
+  const std::size_t parts = targets_of(samples.input);
+  const std::size_t each = parts * sizeof(float) + numbers_of(samples.input);
   if (count < 0 || rest / each != static_cast<std::size_t>(count) || rest % each != 0)
     throw refuse("it says " + std::to_string(count) + " samples, its " + std::to_string(rest) +
                  " bytes hold another number");
   if (sha256(std::string_view(bytes).substr(begin)) != sum)
     throw refuse("its data does not match its checksum");
-  samples.targets.resize(static_cast<std::size_t>(count));
+  samples.targets.resize(static_cast<std::size_t>(count) * parts);
   const std::size_t numbers = samples.targets.size() * sizeof(float);
   std::memcpy(samples.targets.data(), bytes.data() + begin, numbers);
   for (const float target : samples.targets)
     if (!std::isfinite(target)) throw refuse("a target is not a finite number");
-  samples.grids.assign(bytes.begin() + static_cast<std::ptrdiff_t>(begin + numbers), bytes.end());
+  samples.inputs.assign(bytes.begin() + static_cast<std::ptrdiff_t>(begin + numbers), bytes.end());
   return samples;
 }
 

@@ -33,7 +33,7 @@ struct Prediction {
 struct Trainable {
   ParameterTable (*sample_parameters)();
   // Of what samples hold; InputError for what no network takes.
-  GridShape (*sample_shape)(const Parameters& parameters);
+  ViewInput (*sample_input)(const Parameters& parameters);
   ParameterTable (*fit_parameters)();  // of samples, architecture and training
   // Figures of the best epoch, as the model's provenance holds them.
   Value (*fit)(const Parameters& parameters, const FitRequest& request);

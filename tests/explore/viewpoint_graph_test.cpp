@@ -196,14 +196,14 @@ class SampleFolder : public ::testing::Test {
     SampleSet samples;
     samples.world = "downtown 3";
     samples.episode = 7;
-    samples.shape = {2, 3, 2, 1};
+    samples.input = GridShape{2, 3, 2, 1};
     samples.mapping = Value::map();
     samples.mapping.set("resolution", 0.4);
-    std::vector<float> grid(samples.shape.size());
+    std::vector<float> grid(numbers_of(samples.input));
     for (int k = 0; k < count; ++k) {
       for (std::size_t i = 0; i < grid.size(); ++i)
         grid[i] = static_cast<float>((static_cast<std::size_t>(k) * 7 + i * 11) % 256) / 255;
-      samples.add(grid, 0.5 * k);
+      samples.add(grid, std::vector{0.5f * static_cast<float>(k)});
     }
     return samples;
   }
@@ -225,9 +225,9 @@ TEST_F(SampleFolder, EveryChangedByteOfTheDataAndEveryCutAreNoticed) {
   write_samples(samples, path);
   const std::string good = read_file(path, 1 << 20);
   EXPECT_EQ(read_samples(path).targets, samples.targets);
-  EXPECT_EQ(read_samples(path).grids, samples.grids);
+  EXPECT_EQ(read_samples(path).inputs, samples.inputs);
   const std::size_t data = good.find('\n', good.find('\n') + 1) + 1;
-  ASSERT_EQ(good.size() - data, samples.size() * (4 + samples.shape.size()));
+  ASSERT_EQ(good.size() - data, samples.size() * (4 + numbers_of(samples.input)));
   for (std::size_t k = data; k < good.size(); ++k) {
     std::string bad = good;
     bad[k] = static_cast<char>(bad[k] ^ 0x10);
@@ -241,28 +241,28 @@ TEST_F(SampleFolder, EveryChangedByteOfTheDataAndEveryCutAreNoticed) {
   write_file_atomically(path, good + "x");
   EXPECT_NE(refusal(path).find("hold another number"), std::string::npos);
   std::string other = good;
-  other[other.find('3')] = '9';
+  other[other.find('4')] = '9';
   write_file_atomically(path, other);
-  EXPECT_NE(refusal(path).find("another format than 3"), std::string::npos) << refusal(path);
+  EXPECT_NE(refusal(path).find("another format than 4"), std::string::npos) << refusal(path);
   EXPECT_NE(refusal(path).find("a.samples"), std::string::npos) << "names the file";
   EXPECT_NE(refusal(folder_ / "none.samples"), "");
 }
 
 TEST_F(SampleFolder, ValuesOutsideAreADefectAndRoundingIsNone) {
   SampleSet samples = samples_of(0);
-  std::vector<float> grid(samples.shape.size(), 0.5f);
-  EXPECT_THROW(samples.add(std::vector<float>(3), 1), Error);
+  std::vector<float> grid(numbers_of(samples.input), 0.5f);
+  EXPECT_THROW(samples.add(std::vector<float>(3), std::vector{1.0f}), Error);
   for (const float bad : {-0.01f, 1.01f, std::nanf("")}) {
     grid[1] = bad;
-    EXPECT_THROW(samples.add(grid, 1), Error) << bad;
+    EXPECT_THROW(samples.add(grid, std::vector{1.0f}), Error) << bad;
   }
   SampleSet fresh = samples_of(0);
   grid[1] = 1.00005f;
   grid[2] = -0.00005f;
-  fresh.add(grid, 1);
-  EXPECT_EQ(fresh.grids[1], 255);
-  EXPECT_EQ(fresh.grids[2], 0);
-  EXPECT_EQ(fresh.grids[0], 128);
+  fresh.add(grid, std::vector{1.0f});
+  EXPECT_EQ(fresh.inputs[1], 255);
+  EXPECT_EQ(fresh.inputs[2], 0);
+  EXPECT_EQ(fresh.inputs[0], 128);
 }
 
 TEST_F(SampleFolder, FilesAreListedByNameAndOnceEach) {

@@ -40,7 +40,8 @@ TEST_P(ShippedScene, BelongsToItsSeed) {
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedScene,
                          testing::Values("courtyard", "street", "church", "suburb", "downtown",
-                                         "district", "towers", "town", "office", "arcade"),
+                                         "district", "towers", "town", "office", "arcade", "mine",
+                                         "depot"),
                          [](const auto& entry) { return std::string(entry.param); });
 
 // The measure itself, on bodies whose answer is known.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Studies of explorations: evaluations and samples, their folders, what they refuse.
+// Studies of explorations: evaluations, their folders, what they refuse.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -308,91 +308,6 @@ end)");
   fs::remove_all(out);
   EXPECT_EQ(evaluate("--moves clear=1e12"), 2);
   EXPECT_THAT(read_file(errors), testing::HasSubstr("more than 2^24 voxels"));
-}
-
-// Another camera and map: the shipped model is not good for them, one trained with them is.
-TEST_F(Exploring, AModelIsTrainedForAnotherMapping) {
-  few("");  // writes the yard
-  const std::string errors = (folder_ / "errors.txt").string();
-  const auto run = [&](const std::string& command, const std::string& more) {
-    const std::string line = std::string(LAPWING_BUILD_DIR) + "/bin/lapwing " + command + " " +
-                             more + " > /dev/null 2> '" + errors + "'";
-    return WEXITSTATUS(std::system(line.c_str()));
-  };
-  const std::string world = "--world '" + (folder_ / "yard.obj").string() + "' ";
-  const std::string mapping = "--mapping resolution=0.5 --mapping range=12 --mapping view_deg=70 ";
-  const std::string samples = "'" + (folder_ / "samples").string() + "' ";
-  const std::string others = "'" + (folder_ / "others").string() + "' ";
-  const std::string model = "'" + (folder_ / "own.model").string() + "' ";
-  const std::string small =
-      "--set blocks=1 --set units=1 --set growth=8 --set hidden1=8 "
-      "--set hidden2=8 --set batch=8 --set epochs=1 ";
-  const auto evaluate = [&](const std::string& more) {
-    return run("evaluate explore", world + mapping + more +
-                                       "--utility learned --episodes 1 --steps 2 -o '" +
-                                       (folder_ / "found").string() + "'");
-  };
-  EXPECT_EQ(evaluate(""), 2);
-  EXPECT_THAT(read_file(errors), testing::HasSubstr("trained with another mapping: resolution"));
-  for (const auto& [folder, seed] : {std::pair{samples, "1"}, {others, "2"}})
-    ASSERT_EQ(run("train dataset",
-                  world + mapping + "--episodes 1 --steps 4 --seed " + seed + " -o " + folder),
-              0)
-        << read_file(errors);
-  ASSERT_EQ(run("train fit", samples + "--validation " + others + small + "-o " + model), 0)
-      << read_file(errors);
-  ASSERT_EQ(run("train score", others + "--model " + model), 0) << read_file(errors);
-  EXPECT_EQ(evaluate("--set learned.model=" + model), 0) << read_file(errors);
-  EXPECT_EQ(run("train score", others + others + "--model " + model), 2);
-  EXPECT_THAT(read_file(errors), testing::HasSubstr("is named twice"));
-  const fs::path sample = folder_ / "others" / "yard.obj_1.samples";
-  std::string damaged = read_file(sample);
-  damaged[damaged.size() - 9] ^= 1;
-  write_file_atomically(sample, damaged);
-  EXPECT_EQ(run("train score", others + "--model " + model), 2);
-  EXPECT_THAT(read_file(errors), testing::HasSubstr("does not match its checksum"));
-  EXPECT_EQ(run("train dataset", world + "--set epochs=3 -o " + samples), 2);
-  EXPECT_THAT(read_file(errors), testing::HasSubstr("epochs: unknown key"));
-  // A grid that no network takes is refused before anything is flown.
-  EXPECT_EQ(run("train dataset", world + "--set grid.across=3 -o " + samples), 2);
-  EXPECT_THAT(read_file(errors), testing::HasSubstr("cannot be halved"));
-}
-
-// Samples are neither written over nor taken for others.
-TEST_F(Exploring, SamplesAreKept) {
-  few("");  // writes the yard
-  const fs::path folder = folder_ / "samples", file = folder / "yard.obj_1.samples";
-  const std::string errors = (folder_ / "errors.txt").string();
-  const auto made = [&](const std::string& more) {
-    const std::string line = std::string(LAPWING_BUILD_DIR) +
-                             "/bin/lapwing train dataset --world '" +
-                             (folder_ / "yard.obj").string() + "' --steps 2 --quiet -o '" +
-                             folder.string() + "' " + more + " 2> '" + errors + "'";
-    return WEXITSTATUS(std::system(line.c_str()));
-  };
-  ASSERT_EQ(made("--episodes 1"), 0) << read_file(errors);
-  const std::string first = read_file(file);
-  EXPECT_EQ(made("--episodes 1"), 2);
-  EXPECT_THAT(read_file(errors), testing::HasSubstr("--resume keeps it"));
-  for (const auto& [more, expected] : std::vector<std::pair<const char*, const char*>>{
-           {"--seed 2", "seed is 1 there, 2 here"},
-           {"--explorer frontier", "explorer is \"oracle\" there"},
-           {"--moves clear=5", "moves is"},
-           {"--set grid.levels=2", "grid is"}}) {
-    EXPECT_EQ(made(std::string("--resume --episodes 2 ") + more), 2) << more;
-    EXPECT_THAT(read_file(errors), testing::HasSubstr(expected)) << more;
-  }
-  EXPECT_FALSE(fs::exists(folder / "yard.obj_2.samples"));
-  ASSERT_EQ(made("--resume --episodes 2"), 0) << read_file(errors);
-  EXPECT_TRUE(fs::exists(folder / "yard.obj_2.samples"));
-  EXPECT_EQ(read_file(file), first);
-  // Another episode's file in the place of one, and what is wrong is known before any is flown.
-  fs::copy_file(file, folder / "yard.obj_3.samples");
-  EXPECT_EQ(made("--resume --episodes 3"), 2);
-  EXPECT_THAT(read_file(errors), testing::HasSubstr("it is episode 1"));
-  fs::remove(folder / "yard.obj_3.samples");
-  EXPECT_EQ(made("--resume --episodes 3 --world nowhere"), 2);
-  EXPECT_FALSE(fs::exists(folder / "yard.obj_3.samples"));
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ TEST_F(Exploring, DamagedModelsAndEmptyScenesAreNamed) {
   EXPECT_NE(with_model(damaged).find("broken.model' is not a model"), std::string::npos)
       << with_model(damaged);
   damaged = shipped;  // another header
-  damaged.replace(damaged.find("\"mean\":140"), 10, "\"mean\":240");
+  damaged.replace(damaged.find("\"width\":32"), 10, "\"width\":64");
   EXPECT_NE(with_model(damaged).find("checksum"), std::string::npos) << with_model(damaged);
   EXPECT_NE(with_model(shipped.substr(0, 5000)).find("broken.model' is not a model"),
             std::string::npos);

@@ -59,7 +59,8 @@ add_dependencies(test_path lapwing_map_brick)
 add_dependencies(test_explore lapwing_map_brick)
 get_filename_component(learned ${PROJECT_SOURCE_DIR}/plugins/utilities/learned ABSOLUTE)
 target_sources(test_utilities PRIVATE ${learned}/network.cpp ${learned}/kernels.cpp
-  ${learned}/backpropagation.cpp ${learned}/model_file.cpp ${learned}/fit.cpp)
+  ${learned}/backpropagation.cpp ${learned}/ray_network.cpp ${learned}/grid_trainee.cpp
+  ${learned}/ray_trainee.cpp ${learned}/model_file.cpp ${learned}/fit.cpp)
 foreach(utility frontier average_entropy proximity_count oracle learned)
   add_dependencies(test_utilities lapwing_utility_${utility})
 endforeach()
@@ -78,6 +79,7 @@ if(LAPWING_LEARN)
   find_path(torch_headers torch/torch.h PATH_SUFFIXES torch/csrc/api/include REQUIRED)
   add_executable(test_learned_torch ${CMAKE_CURRENT_LIST_DIR}/learned_torch/learned_torch_test.cpp
     ${learned}/network.cpp ${learned}/kernels.cpp ${learned}/backpropagation.cpp
+    ${learned}/ray_network.cpp
     ${learned}/model_file.cpp)
   target_include_directories(test_learned_torch SYSTEM PRIVATE ${torch_headers})
   target_compile_definitions(test_learned_torch PRIVATE ${test_definitions})

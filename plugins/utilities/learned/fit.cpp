@@ -15,30 +15,20 @@
 #include "framework/core/number_text.h"
 #include "framework/core/parallel.h"
 #include "plugins/utilities/learned/kernels.h"
-#include "plugins/utilities/learned/model_file.h"
+#include "plugins/utilities/learned/trainee.h"
 
 namespace lapwing::learned {
 namespace {
 
-struct Samples {
-  std::vector<SampleSet> sets;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> all;  // set, sample
-
-  const std::uint8_t* grid(std::size_t k) const {
-    const SampleSet& set = sets[all[k].first];
-    return set.grids.data() + all[k].second * set.shape.size();
-  }
-  float target(std::size_t k) const { return sets[all[k].first].targets[all[k].second]; }
-  std::size_t size() const { return all.size(); }
-};
-
-Samples read_all(const std::vector<std::filesystem::path>& files, const GridShape& shape,
+Samples read_all(const std::vector<std::filesystem::path>& files, const ViewInput& input,
                  Value& mapping) {
   Samples samples;
   for (const auto& file : files) {
     SampleSet set = read_samples(file);
-    if (!(set.shape == shape))
-      throw InputError("'" + file.string() + "' holds grids of another shape than the network's");
+    if (!(set.input == input))
+      throw InputError("'" + file.string() + "' holds samples of another input, " +
+                       to_json(to_value(set.input), -1) + ", than the network reads, " +
+                       to_json(to_value(input), -1));
     if (const std::string fault = mapping_fault(set.mapping); !fault.empty())
       throw InputError("'" + file.string() +
                        "' was made with a mapping that is not whole: " + fault);
@@ -52,43 +42,6 @@ Samples read_all(const std::vector<std::filesystem::path>& files, const GridShap
     samples.sets.push_back(std::move(set));
   }
   return samples;
-}
-
-GridShape grid_of(const Parameters& grid) {
-  return {static_cast<int>(grid.integer("across")), static_cast<int>(grid.integer("ahead")),
-          static_cast<int>(grid.integer("up")), static_cast<int>(grid.integer("levels"))};
-}
-
-NetworkShape shape_of(const Parameters& p) {
-  NetworkShape shape;
-  shape.grid = grid_of(p.table("grid"));
-  shape.blocks = static_cast<int>(p.integer("blocks"));
-  shape.units = static_cast<int>(p.integer("units"));
-  shape.growth = static_cast<int>(p.integer("growth"));
-  shape.hidden1 = static_cast<int>(p.integer("hidden1"));
-  shape.hidden2 = static_cast<int>(p.integer("hidden2"));
-  require_sense(shape);
-  return shape;
-}
-
-// What the network says of samples, normalised.
-template <class GridOf>
-std::vector<float> answers_to(const Model& model, std::size_t count, int threads, GridOf grid_of) {
-  const FoldedNetwork network(NetworkLayout(model.shape), model.state);
-  std::vector<float> answers(count);
-  parallel_for(count, threads, [&](std::size_t k) { answers[k] = network.answer(grid_of(k)); });
-  return answers;
-}
-
-double mean_squared_error(const Model& model, std::span<const float> answers,
-                          std::span<const float> targets) {
-  double sum = 0;
-  for (std::size_t k = 0; k < answers.size(); ++k) {
-    const double error =
-        static_cast<double>(answers[k]) - model.answer_of(static_cast<double>(targets[k]));
-    sum += error * error;
-  }
-  return sum / static_cast<double>(std::max<std::size_t>(answers.size(), 1));
 }
 
 // Says which samples these are without holding them.
@@ -121,21 +74,9 @@ void require_apart(const FitRequest& request, const Samples& training, const Sam
                        "': training and validation must differ");
 }
 
-struct Judged {
-  double loss = 0, rho = 0;
-};
-
-Judged judge(const Samples& samples, const Model& model, int threads) {
-  const std::vector<float> answers =
-      answers_to(model, samples.size(), threads, [&](std::size_t k) { return samples.grid(k); });
-  std::vector<float> targets(samples.size());
-  for (std::size_t k = 0; k < targets.size(); ++k) targets[k] = samples.target(k);
-  return {mean_squared_error(model, answers, targets), rank_correlation(answers, targets)};
-}
-
 class Training {
  public:
-  Training(const Parameters& p, const FitRequest& request);
+  Training(NewTrainee make, const Parameters& p, const FitRequest& request);
   Value run();
 
  private:
@@ -146,11 +87,10 @@ class Training {
   void note(std::int64_t number, double training, const Judged& judged, double seconds);
 
   const FitRequest& request_;
-  NetworkShape shape_;
-  NetworkLayout layout_;
+  std::unique_ptr<Trainee> network_;
   int batch_, epochs_, until_, patience_;
-  double rate_, dropout_, regularisation_;
-  bool mirror_, cosine_, root_;
+  double rate_;
+  bool mirror_, cosine_;
   std::string from_;  // a model to begin with
   Samples training_, validation_;
   Model model_;
@@ -160,24 +100,20 @@ class Training {
   double seconds_ = 0;
 };
 
-Training::Training(const Parameters& p, const FitRequest& request)
+Training::Training(NewTrainee make, const Parameters& p, const FitRequest& request)
     : request_(request),
-      shape_(shape_of(p)),
-      layout_(shape_),
       batch_(static_cast<int>(p.integer("batch"))),
       epochs_(static_cast<int>(p.integer("epochs"))),
       until_(static_cast<int>(p.integer("until") > 0 ? p.integer("until") : epochs_)),
       patience_(static_cast<int>(p.integer("patience"))),
       rate_(p.number("rate")),
-      dropout_(p.number("dropout")),
-      regularisation_(p.number("regularisation")),
       mirror_(p.boolean("mirror")),
       cosine_(p.text("schedule") == "cosine"),
-      root_(p.text("targets") == "root"),
       from_(p.text("begin")) {
   Value mapping;
-  training_ = read_all(request.training, shape_.grid, mapping);
-  validation_ = read_all(request.validation, shape_.grid, mapping);
+  const ViewInput input = make(p, 1, 1)->input();  // refuses what is no architecture
+  training_ = read_all(request.training, input, mapping);
+  validation_ = read_all(request.validation, input, mapping);
   require_apart(request, training_, validation_);
   asked_.set("seed", static_cast<std::int64_t>(request.seed));
   for (const auto& [key, value] : p.value().as_map())
@@ -196,29 +132,16 @@ Training::Training(const Parameters& p, const FitRequest& request)
     throw InputError("too few samples to train with: " + std::to_string(training_.size()) +
                      " of training, " + std::to_string(validation_.size()) + " of validation");
   batch_ = static_cast<int>(std::min(static_cast<std::size_t>(batch_), training_.size()));
-  model_.shape = shape_;
+  network_ = make(p, batch_, request.threads);
   model_.mapping = mapping;
   model_.provenance = Value::map();
 }
 
 void Training::begin() {
-  model_.root = root_;
-  double sum = 0, squares = 0;
-  const double count = static_cast<double>(training_.size());
-  for (std::size_t k = 0; k < training_.size(); ++k)
-    sum += model_.answer_of(static_cast<double>(training_.target(k)));
-  for (std::size_t k = 0; k < training_.size(); ++k) {
-    const double d = model_.answer_of(static_cast<double>(training_.target(k))) - sum / count;
-    squares += d * d;
-  }
-  model_.target_mean = sum / count;
-  model_.target_deviation = std::sqrt(squares / count);
-  if (!(model_.target_deviation > 0))
-    throw InputError("all training samples have the same target: nothing can be learned");
-  model_.state = initial_state(layout_, Random(request_.seed));
+  network_->begin(model_, training_, request_.seed);
   if (!from_.empty()) {
     Model other = read_model(from_);
-    if (!(other.shape == shape_))
+    if (!network_->fits(other))
       throw InputError("begin: '" + from_ + "' has another architecture than asked for");
     const std::string difference = mapping_difference(model_.mapping, other.mapping);
     if (!difference.empty())
@@ -227,7 +150,7 @@ void Training::begin() {
     Value& begun = model_.provenance.set("begin", other.provenance);
     begun.set("sha256", sha256(read_file(from_)));
   }
-  model_.adam.emplace(layout_.parameters);
+  model_.adam.emplace(network_->parameters());
   best_.loss = HUGE_VAL;
 }
 
@@ -246,7 +169,7 @@ void Training::require_same(const Value& checkpoints) const {
 void Training::resume() {
   Model saved = read_model(request_.checkpoint);
   if (!saved.adam) throw InputError("'" + request_.checkpoint.string() + "' is not a checkpoint");
-  if (!(saved.shape == shape_))
+  if (!network_->fits(saved))
     throw InputError("the checkpoint has another architecture than asked for");
   const std::string difference = mapping_difference(model_.mapping, saved.mapping);
   if (!difference.empty()) throw InputError("the checkpoint has another mapping: " + difference);
@@ -279,24 +202,16 @@ double Training::epoch(std::int64_t number) {
   for (std::size_t k = order.size(); k-- > 1;)
     std::swap(order[k],
               order[static_cast<std::size_t>(random.integer(0, static_cast<std::int64_t>(k)))]);
-  Backpropagation network(layout_, batch_, request_.threads);
   const std::size_t batches = order.size() / static_cast<std::size_t>(batch_);
-  std::vector<float> gradient(layout_.parameters), targets(static_cast<std::size_t>(batch_));
+  std::vector<float> gradient(network_->parameters());
   std::vector<std::uint8_t> mirrored(static_cast<std::size_t>(batch_));
   double sum = 0;
   for (std::size_t b = 0; b < batches; ++b) {
     if (request_.cancellation && request_.cancellation->cancelled()) throw Cancelled();
     for (auto& turned : mirrored) turned = mirror_ && (random.bits() >> 63) != 0;
-    parallel_for(targets.size(), request_.threads, [&](std::size_t i) {
-      const std::size_t k = order[b * targets.size() + i];
-      decode_grid(layout_, training_.grid(k), mirrored[i] != 0, network.input(static_cast<int>(i)));
-      targets[i] = static_cast<float>(model_.answer_of(static_cast<double>(training_.target(k))));
-    });
-    BatchOptions options;
-    options.dropout = dropout_;
-    options.regularisation = regularisation_;
-    options.seed = random.bits();
-    sum += network.loss(model_.state, targets, options, gradient);
+    const BatchDraw draw{std::span(order).subspan(b * mirrored.size(), mirrored.size()), mirrored,
+                         random.bits()};
+    sum += network_->loss(model_, training_, draw, gradient);
     const double through =
         (static_cast<double>(number - 1) * static_cast<double>(batches) + static_cast<double>(b)) /
         (static_cast<double>(epochs_) * static_cast<double>(batches));
@@ -322,7 +237,7 @@ Value Training::run() {
     begin();
   char line[160];
   std::snprintf(line, sizeof line, "%zu training samples, %zu validation samples, %zu parameters",
-                training_.size(), validation_.size(), layout_.parameters);
+                training_.size(), validation_.size(), network_->parameters());
   request_.log(line);
   for (std::int64_t number = first_; number <= std::min(epochs_, until_); ++number) {
     if (number - 1 - best_epoch_ >= patience_ && best_epoch_ > 0) {
@@ -331,7 +246,7 @@ Value Training::run() {
     }
     const auto begin_time = std::chrono::steady_clock::now();
     const double loss = epoch(number);
-    const Judged judged = judge(validation_, model_, request_.threads);
+    const Judged judged = network_->judge(model_, validation_, request_.threads);
     if (!std::isfinite(loss) || !std::isfinite(judged.loss))
       throw InputError("the training has no finite loss in epoch " + std::to_string(number) +
                        ": use a rate lower than " + plain_number(asked_.at("rate").as_number()) +
@@ -378,9 +293,24 @@ Value Training::run() {
   return figures;
 }
 
-}  // namespace
+// What both networks are trained by.
+void add_training(ParameterTable& table, std::int64_t batch, std::int64_t epochs,
+                  std::int64_t patience, double rate) {
+  table.integer("batch", batch, "samples per step", between(8, 4096))
+      .integer("epochs", epochs, "passes over the samples", between(1, 100000))
+      .integer("until", 0, "last epoch of this run; 0: all epochs", between(0, 100000))
+      .integer("patience", patience, "epochs without improvement after which training stops",
+               between(1, 100000))
+      .number("rate", rate, "", "of Adam", above(0))
+      .choice("schedule", "constant", {"constant", "cosine"},
+              "constant rate, or falling to 0 at the last epoch")
+      .boolean("mirror", true, "mirror half of the samples")
+      .text("begin", "", "model with the initial weights; empty: none")
+      .integer("validation_samples", 20000, "largest number of samples, evenly over all",
+               between(2, 10000000));
+}
 
-ParameterTable sample_parameters() {
+ParameterTable grid_samples() {
   const Range points = between(GridShape::kLeastPoints, GridShape::kMostPoints);
   ParameterTable grid;
   grid.integer("across", 16, "points to the right and left", points)
@@ -390,59 +320,67 @@ ParameterTable sample_parameters() {
   return ParameterTable().table("grid", grid, "levels of the map that the network reads");
 }
 
-ParameterTable fit_parameters() {
+ParameterTable grid_fit() {
   const Range widths = between(kLanes, NetworkShape::kMostWidth);
-  return sample_parameters()
-      .integer("blocks", 2, "N_c", between(1, NetworkShape::kMostBlocks))
-      .integer("units", 4, "N_u, convolutions per block", between(1, NetworkShape::kMostUnits))
-      .integer("growth", 8, "N_f, feature maps that every convolution adds", widths)
-      .integer("hidden1", 128, "N_h1", widths)
-      .integer("hidden2", 32, "N_h2", widths)
-      .integer("batch", 128, "samples per step", between(8, 4096))
-      .integer("epochs", 30, "passes over the samples", between(1, 100000))
-      .integer("until", 0, "last epoch of this run; 0: all epochs", between(0, 100000))
-      .integer("patience", 10, "epochs without improvement after which training stops",
-               between(1, 100000))
-      .number("rate", 1e-4, "", "of Adam", above(0))
-      .choice("schedule", "constant", {"constant", "cosine"},
-              "constant rate, or falling to 0 at the last epoch")
-      .choice("targets", "plain", {"plain", "root"},
-              "target: values of the oracle, or their square roots")
-      .number("dropout", 0.5, "", "dropout: fraction of hidden units left out", between(0, 0.95))
-      .number("regularisation", 1e-4, "", "lambda of (5.4)", between(0, 1))
-      .boolean("mirror", true, "mirror half of the samples")
-      .text("begin", "", "model with the initial weights; empty: none")
-      .integer("validation_samples", 20000, "largest number of samples, evenly over all",
-               between(2, 10000000));
+  ParameterTable table =
+      grid_samples()
+          .integer("blocks", 2, "N_c", between(1, NetworkShape::kMostBlocks))
+          .integer("units", 4, "N_u, convolutions per block", between(1, NetworkShape::kMostUnits))
+          .integer("growth", 8, "N_f, feature maps that every convolution adds", widths)
+          .integer("hidden1", 128, "N_h1", widths)
+          .integer("hidden2", 32, "N_h2", widths)
+          .choice("targets", "plain", {"plain", "root"},
+                  "target: values of the oracle, or their square roots")
+          .number("dropout", 0.5, "", "dropout: fraction of hidden units left out",
+                  between(0, 0.95))
+          .number("regularisation", 1e-4, "", "lambda of (5.4)", between(0, 1));
+  add_training(table, 128, 30, 10, 1e-4);
+  return table;
 }
 
-GridShape sample_shape(const Parameters& parameters) {
-  NetworkShape smallest;
-  smallest.grid = grid_of(parameters.table("grid"));
-  smallest.blocks = 1;
-  require_sense(smallest);
-  return smallest.grid;
+ParameterTable ray_samples() {
+  const Range edge = between(RayShape::kLeastRays, RayShape::kMostRays);
+  ParameterTable rays;
+  rays.integer("columns", RayShape{}.columns, "rays across the image", edge)
+      .integer("rows", RayShape{}.rows, "rays from its top to its bottom", edge);
+  return ParameterTable().table("rays", rays, "rays of the view that the network reads");
 }
 
-Value fit(const Parameters& parameters, const FitRequest& request) {
-  return Training(parameters, request).run();
+ParameterTable ray_fit() {
+  ParameterTable table = ray_samples()
+                             .integer("width", RayNetworkShape{}.width, "feature maps",
+                                      between(kLanes, RayNetworkShape::kMostWidth))
+                             .integer("convolutions", RayNetworkShape{}.convolutions,
+                                      "of 3 x 3 rays, each dilated twice as far as the one before",
+                                      between(0, RayNetworkShape::kMostConvolutions));
+  add_training(table, 64, 6, 3, 2e-3);
+  return table;
 }
 
-Prediction predict(const std::filesystem::path& path, const SampleSet& samples, int threads) {
-  const Model model = read_model(path);
-  if (!(samples.shape == model.shape.grid))
-    throw InputError("the samples hold grids of another shape than the model '" + path.string() +
-                     "' asks for");
+Value fit_grid(const Parameters& parameters, const FitRequest& request) {
+  return Training(grid_trainee, parameters, request).run();
+}
+
+Value fit_rays(const Parameters& parameters, const FitRequest& request) {
+  return Training(ray_trainee, parameters, request).run();
+}
+
+}  // namespace
+
+void require_fit(const SampleSet& samples, const ViewInput& input, const Model& model,
+                 const std::filesystem::path& path) {
+  if (!(samples.input == input))
+    throw InputError("the samples hold another input than the model '" + path.string() +
+                     "' asks for: " + to_json(to_value(samples.input), -1) + ", not " +
+                     to_json(to_value(input), -1));
   const std::string difference = mapping_difference(samples.mapping, model.mapping);
   if (!difference.empty())
     throw InputError("the samples do not fit the model '" + path.string() + "': " + difference);
-  const std::vector<float> answers = answers_to(model, samples.size(), threads, [&](std::size_t k) {
-    return samples.grids.data() + k * samples.shape.size();
-  });
-  Prediction predicted{{}, mean_squared_error(model, answers, samples.targets)};
-  for (const float answer : answers)
-    predicted.values.push_back(static_cast<float>(model.target_of(static_cast<double>(answer))));
-  return predicted;
 }
+
+const Trainable kGridTrainable{&grid_samples, [](const Parameters& p) { return grid_input(p); },
+                               &grid_fit, &fit_grid, &predict_by_grid};
+const Trainable kRayTrainable{&ray_samples, [](const Parameters& p) { return ray_input(p); },
+                              &ray_fit, &fit_rays, &predict_by_rays};
 
 }  // namespace lapwing::learned

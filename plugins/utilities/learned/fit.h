@@ -6,10 +6,8 @@
 
 namespace lapwing::learned {
 
-ParameterTable sample_parameters();
-GridShape sample_shape(const Parameters& parameters);
-ParameterTable fit_parameters();
-Value fit(const Parameters& parameters, const FitRequest& request);
-Prediction predict(const std::filesystem::path& model, const SampleSet& samples, int threads);
+// The network that reads a grid around the camera (network.h), and the one that reads rays
+// (ray_network.h).
+extern const Trainable kGridTrainable, kRayTrainable;
 
 }  // namespace lapwing::learned

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a network that was trained on an oracle's scores says of a view.
+// What networks that were trained on an oracle's scores say of a view.
 //
 //   utility: learned
 //   utility: {type: learned, model: my.model}
+//   utility: {type: learned_grid, rays: false}
 #include <cmath>
+#include <numeric>
 
 #include "framework/core/error.h"
 #include "framework/core/library_path.h"
@@ -18,17 +20,80 @@ namespace {
 
 using learned::Model;
 
-// Beside this library, in a build tree or an installed one.
-std::filesystem::path shipped_model() {
+// The one that is named, or NAME.model beside this library, in a build tree or an installed one.
+std::filesystem::path model_path(const std::string& named, const std::string& utility) {
+  if (!named.empty()) return named;
   const std::filesystem::path folder = library_folder();
   for (const char* tree : {"plugins", "lapwing/plugins"}) {
-    const auto path = folder / tree / "utilities" / "learned.model";
+    const auto path = folder / tree / "utilities" / (utility + ".model");
     if (std::filesystem::exists(path)) return path;
   }
-  throw InputError(
-      "utility 'learned': the shipped model is not beside its library; name one "
-      "with model: FILE");
+  throw InputError("utility '" + utility +
+                   "': the shipped model is not beside its library; name one with model: FILE");
 }
+
+void require_mapping(const EpisodeView& known, const Model& model, const char* utility) {
+  const std::string difference = mapping_difference(mapping_of(known), model.mapping);
+  if (!difference.empty())
+    throw InputError(std::string("utility '") + utility +
+                     "' was trained with another mapping: " + difference +
+                     "; set the value of the model in the mission, or use a utility without a " +
+                     "model (frontier)");
+}
+
+// The network that reads rays (ray_network.h). The value is in voxels of surface.
+class Learned final : public ViewUtility {
+ public:
+  static constexpr PluginText kText{"learned", "2.0.0",
+                                    "network that reads rays, trained on the values of the oracle",
+                                    "thesis 5.4.3, 5.5.1"};
+  static ParameterTable parameters() {
+    return ParameterTable()
+        .text("model", "", "file of a trained model; empty: the shipped one")
+        .number("least", 0.4, "", "a view that would show fewer voxels is worth nothing",
+                between(0, 1e6))
+        .boolean("blank", false, "blank input of the network, for comparison");
+  }
+  static std::span<const Extension> extensions() {
+    static const Extension all[] = {{kTrainable, &learned::kRayTrainable}};
+    return all;
+  }
+  explicit Learned(const Parameters& p)
+      : path_(model_path(p.text("model"), kText.name)),
+        model_(learned::read_model(path_)),
+        network_(learned::RayNetworkLayout(model_.ray_network(path_)), model_.state.parameters),
+        least_(p.number("least")),
+        blank_(p.boolean("blank")) {}
+
+  void require_fit(const EpisodeView& known) const override {
+    require_mapping(known, model_, kText.name);
+  }
+
+ protected:
+  void values_of(const EpisodeView& known, std::span<const Viewpoint> views,
+                 std::span<double> values) const override {
+    const RayShape& shape = model_.ray_network(path_).rays;
+    parallel_for(views.size(), known.threads, [&](std::size_t i) {
+      thread_local std::vector<float> image, cells;
+      image.resize(shape.size());
+      cells.resize(static_cast<std::size_t>(shape.rays()));
+      if (blank_)
+        std::fill(image.begin(), image.end(), 0.0f);
+      else
+        sample_rays(known, views[i], shape, image);
+      network_.answer(image, cells);
+      const double told = std::accumulate(cells.begin(), cells.end(), 0.0);
+      values[i] = told < least_ ? 0 : told;
+    });
+  }
+
+ private:
+  std::filesystem::path path_;
+  Model model_;
+  learned::RayNetwork network_;
+  double least_;
+  bool blank_;
+};
 
 // Voxels of surface that rays through the map could still observe, weighted as (5.3) weights them.
 // A ray that ends in a known surface has as much of its voxels left as observations have left; one
@@ -70,10 +135,12 @@ double still_to_observe(const EpisodeView& known, const Viewpoint& view, double 
   return (1 - std::exp(-eta)) * (unknown + grazed * seen);
 }
 
-class Learned final : public ViewUtility {
+// The network of the thesis, which reads a grid around the camera (network.h).
+class LearnedGrid final : public ViewUtility {
  public:
   static constexpr PluginText kText{
-      "learned", "1.0.0", "network trained on the values of the oracle", "thesis 5.4.3, 5.5.1"};
+      "learned_grid", "1.0.0", "network that reads a grid, trained on the values of the oracle",
+      "thesis 5.4.3, 5.5.1"};
   static ParameterTable parameters() {
     return ParameterTable()
         .text("model", "", "file of a trained model; empty: the shipped one")
@@ -85,33 +152,26 @@ class Learned final : public ViewUtility {
         .boolean("blank", false, "blank input of the network, for comparison");
   }
   static std::span<const Extension> extensions() {
-    static const Trainable trainable{&learned::sample_parameters, &learned::sample_shape,
-                                     &learned::fit_parameters, &learned::fit, &learned::predict};
-    static const Extension all[] = {{kTrainable, &trainable}};
+    static const Extension all[] = {{kTrainable, &learned::kGridTrainable}};
     return all;
   }
-  explicit Learned(const Parameters& p)
-      : model_(learned::read_model(
-            p.text("model").empty() ? shipped_model() : std::filesystem::path(p.text("model")))),
-        network_(learned::NetworkLayout(model_.shape), model_.state),
+  explicit LearnedGrid(const Parameters& p)
+      : path_(model_path(p.text("model"), kText.name)),
+        model_(learned::read_model(path_)),
+        network_(learned::NetworkLayout(model_.grid_network(path_)), model_.state),
         rays_(p.boolean("rays")),
         behind_(p.number("behind")),
         grazed_(p.number("grazed")),
         blank_(p.boolean("blank")) {}
 
   void require_fit(const EpisodeView& known) const override {
-    const std::string difference = mapping_difference(mapping_of(known), model_.mapping);
-    if (!difference.empty())
-      throw InputError(
-          "utility 'learned' was trained with another mapping: " + difference +
-          "; set the value of the model in the mission, or use a utility without a model "
-          "(frontier)");
+    require_mapping(known, model_, kText.name);
   }
 
  protected:
   void values_of(const EpisodeView& known, std::span<const Viewpoint> views,
                  std::span<double> values) const override {
-    const GridShape& shape = model_.shape.grid;
+    const GridShape& shape = model_.grid_network(path_).grid;
     known.means->refresh(shape.levels);
     parallel_for(views.size(), known.threads, [&](std::size_t i) {
       thread_local std::vector<float> grid;
@@ -129,6 +189,7 @@ class Learned final : public ViewUtility {
   }
 
  private:
+  std::filesystem::path path_;
   Model model_;
   learned::FoldedNetwork network_;
   bool rays_;
@@ -139,4 +200,4 @@ class Learned final : public ViewUtility {
 }  // namespace
 }  // namespace lapwing
 
-LAPWING_PLUGINS(lapwing::Learned)
+LAPWING_PLUGINS(lapwing::Learned, lapwing::LearnedGrid)

@@ -33,6 +33,20 @@ double Model::target_of(double answer) const {
   return root ? told * std::abs(told) : told;
 }
 
+const NetworkShape& Model::grid_network(const std::filesystem::path& path) const {
+  if (const auto* grid = std::get_if<NetworkShape>(&shape)) return *grid;
+  throw InputError("'" + path.string() +
+                   "' is a model that reads rays: it belongs to the utility 'learned', not to "
+                   "'learned_grid'");
+}
+
+const RayNetworkShape& Model::ray_network(const std::filesystem::path& path) const {
+  if (const auto* rays = std::get_if<RayNetworkShape>(&shape)) return *rays;
+  throw InputError("'" + path.string() +
+                   "' is a model that reads a grid: it belongs to the utility 'learned_grid', not "
+                   "to 'learned'");
+}
+
 void write_model(const Model& model, const std::filesystem::path& path) {
   std::string numbers;
   append(numbers, model.state.parameters);
@@ -42,7 +56,7 @@ void write_model(const Model& model, const std::filesystem::path& path) {
     append(numbers, model.adam->second);
   }
   Value header = Value::map();
-  header.set("network", to_value(model.shape));
+  header.set("network", std::visit([](const auto& shape) { return to_value(shape); }, model.shape));
   header.set("mapping", model.mapping);
   Value& targets = header.set("targets", Value::map());
   targets.set("root", model.root);
@@ -90,11 +104,20 @@ Model read_model(const std::filesystem::path& path) {
   if (const std::string fault = mapping_fault(model.mapping); !fault.empty())
     throw refuse("its mapping is not whole: " + fault);
   if (!(model.target_deviation > 0)) throw refuse("its deviation of targets is not above 0");
-  model.shape = network_shape_from(shape);
-  const NetworkLayout layout(model.shape);
+  std::size_t parameters = 0, statistics = 0;
+  if (shape.is_map() && shape.find("rays")) {
+    const RayNetworkShape rays = ray_network_shape_from(shape);
+    parameters = RayNetworkLayout(rays).parameters;
+    model.shape = rays;
+  } else {
+    const NetworkShape grid = network_shape_from(shape);
+    const NetworkLayout layout(grid);
+    parameters = layout.parameters;
+    statistics = layout.statistics;
+    model.shape = grid;
+  }
   const std::string_view numbers = all.substr(line + 1);
-  const std::size_t expected =
-      sizeof(float) * (layout.parameters * (checkpoint ? 3 : 1) + layout.statistics);
+  const std::size_t expected = sizeof(float) * (parameters * (checkpoint ? 3 : 1) + statistics);
   if (numbers.size() != expected)
     throw refuse("its network has " + std::to_string(expected) + " bytes of numbers, the file " +
                  std::to_string(numbers.size()));
@@ -105,15 +128,15 @@ Model read_model(const std::filesystem::path& path) {
     at += count * sizeof(float);
     return values;
   };
-  model.state.parameters = take(layout.parameters);
-  model.state.statistics = take(layout.statistics);
+  model.state.parameters = take(parameters);
+  model.state.statistics = take(statistics);
   for (const std::vector<float>* values : {&model.state.parameters, &model.state.statistics})
     for (const float value : *values)
       if (!std::isfinite(value)) throw refuse("its network has a number that is not finite");
   if (checkpoint) {
     model.adam.emplace(0);
-    model.adam->first = take(layout.parameters);
-    model.adam->second = take(layout.parameters);
+    model.adam->first = take(parameters);
+    model.adam->second = take(parameters);
     model.adam->steps = steps;
   }
   return model;

@@ -8,13 +8,15 @@
 
 #include <filesystem>
 #include <optional>
+#include <variant>
 
 #include "plugins/utilities/learned/backpropagation.h"
+#include "plugins/utilities/learned/ray_network.h"
 
 namespace lapwing::learned {
 
 struct Model {
-  NetworkShape shape;
+  std::variant<NetworkShape, RayNetworkShape> shape;
   Value mapping;                                 // what it was trained with (reading 5.2)
   bool root = false;                             // the network speaks of targets' square roots
   double target_mean = 0, target_deviation = 1;  // of the oracle's values, or of their roots
@@ -27,6 +29,10 @@ struct Model {
   // What the network has to answer for a value of the oracle's, and the other way round.
   double answer_of(double target) const;
   double target_of(double answer) const;
+
+  // InputError naming the file where the model is of the other network.
+  const NetworkShape& grid_network(const std::filesystem::path& path) const;
+  const RayNetworkShape& ray_network(const std::filesystem::path& path) const;
 };
 
 void write_model(const Model& model, const std::filesystem::path& path);

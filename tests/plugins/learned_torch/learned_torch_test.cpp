@@ -135,8 +135,9 @@ NetworkState state_with_statistics(const NetworkLayout& layout) {
 }
 
 TEST(LearnedAgainstTorch, TheShippedModelAnswersTheSame) {
-  const Model model = read_model(LAPWING_SOURCE_DIR "/plugins/utilities/learned/learned.model");
-  expect_the_same_answers(NetworkLayout(model.shape), model.state);
+  const std::string path = LAPWING_SOURCE_DIR "/plugins/utilities/learned/learned_grid.model";
+  const Model model = read_model(path);
+  expect_the_same_answers(NetworkLayout(model.grid_network(path)), model.state);
 }
 
 TEST(LearnedAgainstTorch, OtherShapesAnswerTheSame) {

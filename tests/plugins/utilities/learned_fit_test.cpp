@@ -23,7 +23,7 @@ void write_easy_samples(const std::filesystem::path& folder, int files, std::uin
   for (int file = 0; file < files; ++file) {
     SampleSet set;
     set.world = "made " + std::to_string(file);
-    set.shape = kGrid;
+    set.input = kGrid;
     const PlainMap map{MapSettings{}};
     EpisodeView known;
     known.map = &map;
@@ -32,9 +32,9 @@ void write_easy_samples(const std::filesystem::path& folder, int files, std::uin
     for (int k = 0; k < 64; ++k) {
       const double level = random.uniform();
       std::vector<float> grid;
-      for (std::size_t i = 0; i < set.shape.size(); ++i)
+      for (std::size_t i = 0; i < kGrid.size(); ++i)
         grid.push_back(static_cast<float>(0.8 * level + 0.2 * random.uniform()));
-      set.add(grid, 100 * level);
+      set.add(grid, std::vector{static_cast<float>(100 * level)});
     }
     write_samples(set, folder / ("set_" + std::to_string(seed * 10 + file) + ".samples"));
   }
@@ -67,7 +67,7 @@ struct FitFixture {
     given.set("dropout", 0.0);
   }
   ~FitFixture() { std::filesystem::remove_all(folder); }
-  Value run() { return fit(check(fit_parameters(), given), request); }
+  Value run() { return kGridTrainable.fit(check(kGridTrainable.fit_parameters(), given), request); }
   // What it says; empty where it does not refuse.
   std::string refusal() {
     try {
@@ -84,7 +84,7 @@ TEST(LearnedFit, LearnsWhatIsEasy) {
   const Value figures = fixture.run();
   EXPECT_GT(figures.at("validation_rho").as_number(), 0.95);
   const SampleSet set = read_samples(fixture.request.validation.front());
-  const Prediction predicted = predict(fixture.request.model, set, 1);
+  const Prediction predicted = kGridTrainable.predict(fixture.request.model, set, 1);
   EXPECT_NEAR(rank_correlation(predicted.values, set.targets),
               figures.at("validation_rho").as_number(), 1e-6);
   const double loss = figures.at("validation_loss").as_number();
@@ -98,7 +98,7 @@ TEST(LearnedFit, LearnsRootsAsWell) {
   const Value figures = fixture.run();
   EXPECT_GT(figures.at("validation_rho").as_number(), 0.95);
   const SampleSet set = read_samples(fixture.request.validation.front());
-  const Prediction predicted = predict(fixture.request.model, set, 1);
+  const Prediction predicted = kGridTrainable.predict(fixture.request.model, set, 1);
   double error = 0;
   for (std::size_t k = 0; k < set.size(); ++k)
     error += std::abs(static_cast<double>(predicted.values[k] - set.targets[k])) /
@@ -226,9 +226,9 @@ TEST(LearnedFit, GoesOnWithTheSameAlone) {
 }
 
 // What the shipped model is, header and weights; its figures in the readme are of this one.
-TEST(LearnedModel, TheShippedOneIsWhatItWas) {
+TEST(LearnedModel, TheShippedGridIsWhatItWas) {
   const auto path =
-      std::filesystem::path(LAPWING_SOURCE_DIR) / "plugins/utilities/learned/learned.model";
+      std::filesystem::path(LAPWING_SOURCE_DIR) / "plugins/utilities/learned/learned_grid.model";
   const Model model = read_model(path);
   const std::string bytes = read_file(path);
   const std::size_t numbers =
@@ -284,7 +284,7 @@ TEST(LearnedModel, DamageIsFound) {
   write_file_atomically(path, bytes);
   other.mapping.set("resolution", 0.2);
   try {
-    predict(path, other, 1);
+    kGridTrainable.predict(path, other, 1);
     ADD_FAILURE() << "a model of another resolution";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("resolution is 0.2 m, the model's 0.4 m"),

@@ -125,14 +125,14 @@ TEST(ProximityCount, AddsWhatIsLeftOfTheDistanceBehindSeenSurfaces) {
 }
 
 // The one ray ends 3.5 m away, where a pixel of four is 0.035 m wide; at 5 m, 0.05 m.
-TEST(Learned, AsksTheRaysWhatIsLeftToObserve) {
+TEST(LearnedGrid, AsksTheRaysWhatIsLeftToObserve) {
   Value bare = Value::map();
   bare.set("rays", false);
   const auto expect_left = [&](const Corridor& corridor, double voxels) {
-    const double network = corridor.told("learned", bare);
+    const double network = corridor.told("learned_grid", bare);
     ASSERT_GT(network, 0);  // else nothing is asked
     const double left = (1 - std::exp(-corridor.map.settings().information)) * voxels;
-    EXPECT_NEAR(corridor.told("learned"), network * left / (network + left), 1e-6 * left);
+    EXPECT_NEAR(corridor.told("learned_grid"), network * left / (network + left), 1e-6 * left);
   };
   expect_left(Corridor(4, VoxelState::unknown), 0.05 * 0.05);
   expect_left(Corridor(4, VoxelState::occupied), 3 * 0.035 * 0.035);
@@ -140,20 +140,20 @@ TEST(Learned, AsksTheRaysWhatIsLeftToObserve) {
   const Corridor corridor(4, VoxelState::unknown);
   Value further = Value::map();
   further.set("behind", 4.5);
-  EXPECT_GT(corridor.told("learned", further), 2 * corridor.told("learned"));
+  EXPECT_GT(corridor.told("learned_grid", further), 2 * corridor.told("learned_grid"));
 }
 
 // Three rays, the outer ones 1.118 m long, to voxels of a wall; between them a gap of one ray.
-TEST(Learned, LooksThroughNoGapOfOneRay) {
+TEST(LearnedGrid, LooksThroughNoGapOfOneRay) {
   Corridor corridor(2, VoxelState::unknown);
   corridor.known.pinhole = {12, 4, 8, 8, 5.5, 1.5};
   Value bare = Value::map();
   bare.set("rays", false);
   const auto expect_left = [&](double voxels) {
-    const double network = corridor.told("learned", bare);
+    const double network = corridor.told("learned_grid", bare);
     ASSERT_GT(network, 0);
     const double left = (1 - std::exp(-corridor.map.settings().information)) * voxels;
-    EXPECT_NEAR(corridor.told("learned"), network * left / (network + left), 1e-6 * left);
+    EXPECT_NEAR(corridor.told("learned_grid"), network * left / (network + left), 1e-6 * left);
   };
   // Ends at 1.5 m and, to both sides, 1.118 m, all in the unknown: what is 1.5 m behind counts.
   const double side = std::sqrt(1.25), edge = 0.5;  // m; m across four pixels at 1 m
