@@ -121,8 +121,7 @@ class RecipeRun {
     for (std::size_t k = 0; k < lines.size(); ++k) {
       const RecipeSamples& line = lines[k];
       std::vector<std::string> words = command("dataset");
-      for (const std::string& world : line.worlds())
-        words.insert(words.end(), {"--world", world});
+      for (const std::string& world : line.worlds()) words.insert(words.end(), {"--world", world});
       const bool itself = line.explorer == TrainingRecipe::kItself;
       words.insert(words.end(), {"--explorer", itself ? recipe_.utility : line.explorer});
       if (itself) words.insert(words.end(), {"--explorer-set", "model=" + model});

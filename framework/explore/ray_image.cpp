@@ -76,9 +76,7 @@ class RayReader {
   float left(const VoxelReading& voxel) const {
     return left_[std::min<std::size_t>(voxel.observations, left_.size() - 1)];
   }
-  static float occupancy(const VoxelReading& voxel) {
-    return 1 / (1 + std::exp(-voxel.log_odds));
-  }
+  static float occupancy(const VoxelReading& voxel) { return 1 / (1 + std::exp(-voxel.log_odds)); }
 
   const Map& map_;
   double range_;

@@ -21,7 +21,7 @@ struct RayShape {
   // range.
   static constexpr std::array<int, 9> kEnds = {1, 2, 3, 4, 6, 8, 12, 16, 24};
   static constexpr int kSegments = static_cast<int>(kEnds.size()) + 1;
-  static constexpr int kFirst = 6;     // numbers about the first voxel that is not free
+  static constexpr int kFirst = 6;  // numbers about the first voxel that is not free
   static constexpr int kOfSegment = 3;
   static constexpr int kChannels = kFirst + kOfSegment * kSegments;
 

@@ -7,8 +7,9 @@
 --   return explore.of_mesh { name = "my mesh" }           -- --set input=FILE
 --
 -- `utility` is the value of a view: frontier, average_entropy, proximity_count, learned,
--- learned_grid, or oracle, which knows the surface. `map` selects the map plugin only. The parameters that all map plugins
--- share are options of the mission, because a learned utility is valid for one set of values only.
+-- learned_grid, or oracle, which knows the surface. `map` selects the map plugin only. The
+-- parameters that all map plugins share are options of the mission, because a learned utility is
+-- valid for one set of values only.
 local depth_sensor = require "mission.depth_sensor"
 local mission_of = require "mission.mission_of"
 local named_scene = require "mission.named_scene"

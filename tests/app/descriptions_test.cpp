@@ -88,7 +88,8 @@ TEST(Described, SchemasBesideConfigurations) {
   for (const auto& item : fs::recursive_directory_iterator(kTree / "configs")) {
     const fs::path file = item.path();
     const std::string room = file.parent_path().filename();
-    if (file.extension() != ".yaml" || room == "cameras" || room == "reproduce") continue;
+    if (file.extension() != ".yaml" || room == "cameras" || room == "reproduce" || room == "train")
+      continue;
     const Value given = read_yaml(file);
     EXPECT_EQ(schema_error(room == "vehicles" ? vehicle : missions, given), "") << file;
     const std::string named = room == "vehicles" ? "vehicle" : "mission";

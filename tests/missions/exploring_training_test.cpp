@@ -21,8 +21,7 @@ TEST_F(Exploring, AModelIsTrainedForAnotherMapping) {
   const std::string samples = "'" + (folder_ / "samples").string() + "' ";
   const std::string others = "'" + (folder_ / "others").string() + "' ";
   const std::string model = "'" + (folder_ / "own.model").string() + "' ";
-  const std::string small =
-      "--set width=8 --set convolutions=1 --set batch=8 --set epochs=1 ";
+  const std::string small = "--set width=8 --set convolutions=1 --set batch=8 --set epochs=1 ";
   const auto evaluate = [&](const std::string& more) {
     return run("evaluate explore", world + mapping + more +
                                        "--utility learned --episodes 1 --steps 2 -o '" +
@@ -52,9 +51,8 @@ TEST_F(Exploring, AModelIsTrainedForAnotherMapping) {
   // What no network takes is refused before anything is flown.
   EXPECT_EQ(run("train dataset", world + "--set rays.columns=1 -o " + samples), 2);
   EXPECT_THAT(read_file(errors), testing::HasSubstr("rays.columns"));
-  EXPECT_EQ(run("train dataset",
-                world + "--utility learned_grid --set grid.across=3 -o " + samples),
-            2);
+  EXPECT_EQ(
+      run("train dataset", world + "--utility learned_grid --set grid.across=3 -o " + samples), 2);
   EXPECT_THAT(read_file(errors), testing::HasSubstr("cannot be halved"));
 }
 

@@ -65,8 +65,8 @@ TEST_F(RecipeFile, IsReadWhole) {
 TEST_F(RecipeFile, HoursAreAShareOfTheSeeds) {
   const TrainingRecipe recipe = read(kWhole);
   const TrainingRecipe one = recipe.within(1);
-  EXPECT_EQ(one.rounds[0].samples.at(0).last, 3);    // 2.5 of 10
-  EXPECT_EQ(one.rounds[1].samples.at(0).last, 11);   // at least one
+  EXPECT_EQ(one.rounds[0].samples.at(0).last, 3);   // 2.5 of 10
+  EXPECT_EQ(one.rounds[1].samples.at(0).last, 11);  // at least one
   EXPECT_EQ(one.validation.at(0).last, 901);
   EXPECT_EQ(recipe.within(4).rounds[0].samples.at(0).last, 10);
   for (const double hours : {0.0, -1.0, 4.5, std::nan("")})

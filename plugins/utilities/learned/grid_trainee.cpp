@@ -99,9 +99,8 @@ class GridTrainee final : public Trainee {
   }
 
   Judged judge(const Model& model, const Samples& samples, int threads) const override {
-    const std::vector<float> answers =
-        answers_to(shape_, model, samples.size(), threads,
-                   [&](std::size_t k) { return samples.input(k); });
+    const std::vector<float> answers = answers_to(shape_, model, samples.size(), threads,
+                                                  [&](std::size_t k) { return samples.input(k); });
     std::vector<float> targets(samples.size());
     for (std::size_t k = 0; k < targets.size(); ++k) targets[k] = *samples.targets(k);
     return {mean_squared_error(model, answers, targets), rank_correlation(answers, targets)};
@@ -137,9 +136,8 @@ Prediction predict_by_grid(const std::filesystem::path& path, const SampleSet& s
   const NetworkShape& shape = model.grid_network(path);
   require_fit(samples, shape.grid, model, path);
   const std::vector<float> answers =
-      answers_to(shape, model, samples.size(), threads, [&](std::size_t k) {
-        return samples.inputs.data() + k * shape.grid.size();
-      });
+      answers_to(shape, model, samples.size(), threads,
+                 [&](std::size_t k) { return samples.inputs.data() + k * shape.grid.size(); });
   Prediction predicted{{}, mean_squared_error(model, answers, samples.targets)};
   for (const float answer : answers)
     predicted.values.push_back(static_cast<float>(model.target_of(static_cast<double>(answer))));

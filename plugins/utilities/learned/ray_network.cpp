@@ -14,8 +14,8 @@
 namespace lapwing::learned {
 namespace {
 
-constexpr double kFloor = 1e-4;    // voxels, within the logarithm
-constexpr double kSpread = 5;      // voxels, added to the variance of a view's value
+constexpr double kFloor = 1e-4;      // voxels, within the logarithm
+constexpr double kSpread = 5;        // voxels, added to the variance of a view's value
 constexpr double kFirstAnswer = -1;  // z of an untrained network
 
 // rows x depth times depth x columns, plus a bias.
@@ -68,9 +68,8 @@ void convolve(const RayNetworkLayout& layout, const float* padded, int dilation,
 }
 
 void pad(const RayNetworkLayout& layout, const float* points, float* padded) {
-  const std::size_t row =
-      static_cast<std::size_t>(layout.shape.rays.columns) *
-      static_cast<std::size_t>(layout.shape.width);
+  const std::size_t row = static_cast<std::size_t>(layout.shape.rays.columns) *
+                          static_cast<std::size_t>(layout.shape.width);
   for (int k = 0; k < layout.shape.rays.rows; ++k)
     std::copy_n(points + static_cast<std::size_t>(k) * row, row, padded + layout.row(k));
 }
@@ -82,8 +81,8 @@ void decode(const RayNetworkLayout& layout, bool mirrored, float* inputs, Read r
   for (int row = 0; row < rays.rows; ++row)
     for (int column = 0; column < rays.columns; ++column) {
       const int at = mirrored ? rays.columns - 1 - column : column;
-      float* to = inputs + static_cast<std::ptrdiff_t>(row * rays.columns + at) *
-                               RayNetworkLayout::kInputs;
+      float* to =
+          inputs + static_cast<std::ptrdiff_t>(row * rays.columns + at) * RayNetworkLayout::kInputs;
       for (int c = 0; c < RayShape::kChannels; ++c) to[c] = read(from++);
       to[RayShape::kChannels] =
           -1 + 2 * static_cast<float>(row) / static_cast<float>(rays.rows - 1);
@@ -205,8 +204,8 @@ void run(const RayNetworkLayout& layout, const float* parameters, Forward& f) {
   for (std::size_t k = 0; k < layout.convolutions.size(); ++k) {
     const float* weights = parameters + layout.convolutions[k];
     pad(layout, f.points.data(), f.padded[k].data());
-    convolve(layout, f.padded[k].data(), 1 << k, weights,
-             weights + 9 * wide * wide, true, f.results[k].data());
+    convolve(layout, f.padded[k].data(), 1 << k, weights, weights + 9 * wide * wide, true,
+             f.results[k].data());
     for (std::size_t i = 0; i < f.points.size(); ++i) f.points[i] += f.results[k][i];
   }
   dense(f.points.data(), rays, width, parameters + layout.last, width, true, f.hidden.data());

@@ -4,7 +4,8 @@
 //
 // A ray's numbers are mixed by a dense layer. Then come residual convolutions of 3 x 3 rays, each
 // dilated twice as far as the one before, so that a ray knows what its neighbours meet (Yu and
-// Koltun 2016; He et al. 2016). Two more dense layers end in one number z a ray; the answer is log(1 + exp(z)) voxels.
+// Koltun 2016; He et al. 2016). Two more dense layers end in one number z a ray; the answer is
+// log(1 + exp(z)) voxels.
 // The value of a view is the sum over its rays: what is learned of one part of an image holds for
 // every part.
 //

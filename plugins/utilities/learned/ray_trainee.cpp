@@ -24,8 +24,8 @@ RayNetworkShape network_of_rays(const Parameters& p) {
 
 // Values of views and the mean loss.
 template <class Input, class Targets>
-Prediction told_of(const RayNetworkShape& shape, const Model& model, std::size_t count,
-                   int threads, Input input, Targets targets) {
+Prediction told_of(const RayNetworkShape& shape, const Model& model, std::size_t count, int threads,
+                   Input input, Targets targets) {
   const RayNetwork network(RayNetworkLayout(shape), model.state.parameters);
   const auto rays = static_cast<std::size_t>(shape.rays.rays());
   Prediction told{std::vector<float>(count), 0};

@@ -53,7 +53,7 @@ class Trainee {
 };
 // A network of that architecture for batches of so many samples.
 using NewTrainee = std::unique_ptr<Trainee> (*)(const Parameters& parameters, int batch,
-                                               int threads);
+                                                int threads);
 
 std::unique_ptr<Trainee> grid_trainee(const Parameters& parameters, int batch, int threads);
 std::unique_ptr<Trainee> ray_trainee(const Parameters& parameters, int batch, int threads);

@@ -219,8 +219,8 @@ void write_ray_samples(const std::filesystem::path& folder, int files, std::uint
       }
       set.add(image, cells);
     }
-    write_samples(set, folder / ("set_" + std::to_string(seed * 10) + std::to_string(file) +
-                                 ".samples"));
+    write_samples(
+        set, folder / ("set_" + std::to_string(seed * 10) + std::to_string(file) + ".samples"));
   }
 }
 
@@ -258,8 +258,8 @@ TEST(LearnedRays, LearnsWhatIsEasy) {
   const SampleSet set = read_samples(fixture.request.validation.front());
   const Prediction told = kRayTrainable.predict(fixture.request.model, set, 1);
   EXPECT_NEAR(told.loss, figures.at("validation_loss").as_number(), 1e-5);
-  EXPECT_NEAR(rank_correlation(told.values, set.gains()),
-              figures.at("validation_rho").as_number(), 1e-6);
+  EXPECT_NEAR(rank_correlation(told.values, set.gains()), figures.at("validation_rho").as_number(),
+              1e-6);
   const std::vector<float> gains = set.gains();
   double error = 0, all = 0;
   for (std::size_t k = 0; k < gains.size(); ++k) {
@@ -299,8 +299,7 @@ TEST(LearnedRays, ModelsOfBothNetworksAreToldApart) {
     return "";
   };
   const SampleSet set = read_samples(fixture.request.validation.front());
-  const std::string told =
-      refusal([&] { kGridTrainable.predict(fixture.request.model, set, 1); });
+  const std::string told = refusal([&] { kGridTrainable.predict(fixture.request.model, set, 1); });
   EXPECT_NE(told.find("a.model' is a model that reads rays"), std::string::npos) << told;
   fixture.given.set("rays", to_value(RayShape{7, 5}));
   fixture.request.model = fixture.folder / "b.model";
