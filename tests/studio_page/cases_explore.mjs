@@ -2,9 +2,8 @@
 // An exploration with the studio's own server: stepped through by mouse and by keyboard, the map as
 // it grows; changed by keyboard, flown anew, certified and exported.
 import assert from "node:assert/strict";
-import { statSync } from "node:fs";
 import { centreOf, studioState, type, waitGrade, waitRevision } from "./browser.mjs";
-import { served } from "./served.mjs";
+import { exported, served } from "./served.mjs";
 
 const PLANNED = 60000;   // ms at most
 
@@ -61,11 +60,5 @@ export const explore = (browser, shot) => served(browser, shot, {
   await waitRevision(page, revision + 3);
   await waitGrade(page, "certified", PLANNED);
   await page.click("#compare-dialog .close");
-  await page.click("#export");
-  await page.select("#export-format", "csv");
-  await page.click("#export-go");
-  await page.waitForSelector("#export-result .written");
-  for (const file of await page.$$eval("#export-result code", (all) => all.map((e) => e.textContent))) {
-    assert.ok(statSync(file).size > 1000, file);
-  }
+  await exported(page);
 });

@@ -2,11 +2,10 @@
 // A light painting with the studio's own server: a stroke by mouse in place of a text, another by
 // keyboard, planned, certified and exported; the long exposure as it grows.
 import assert from "node:assert/strict";
-import { statSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { centreOf, studioState, waitGrade, waitRevision } from "./browser.mjs";
-import { served } from "./served.mjs";
+import { exported, served } from "./served.mjs";
 
 const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
 const PLANNED = 60000;   // ms at most
@@ -64,11 +63,5 @@ export const painting = (browser, shot) => served(browser, shot, {
   assert.ok((await studioState(page)).document.strokes.length > 0);
   await waitGrade(page, "certified", PLANNED);
   await picture("painting_04_svg");
-  await page.click("#export");
-  await page.select("#export-format", "csv");
-  await page.click("#export-go");
-  await page.waitForSelector("#export-result .written");
-  for (const file of await page.$$eval("#export-result code", (all) => all.map((e) => e.textContent))) {
-    assert.ok(statSync(file).size > 1000, file);
-  }
+  await exported(page);
 });

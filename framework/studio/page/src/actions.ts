@@ -90,7 +90,7 @@ export class Actions {
       undo: "undo", redo: "redo", fly: "fly", export: "export", report: "report", theme: "theme",
       help: "help", place: "place", insert: "insert", "add-subject": "subject", "fly-camera": "fly-camera", "keyframe-here": "keyframe-here",
       frame: "frame", play: "play", cut: "cut", draw: "draw", margins: "margins", compare: "compare",
-      "map": "map", "place-gate": "place", "add-gate": "insert", "race-it": "race", "place-start": "place",
+      "map": "map", "speeds": "speeds", "place-gate": "place", "add-gate": "insert", "race-it": "race", "place-start": "place",
     };
     for (const [id, action] of Object.entries(simple)) {
       byId(id).addEventListener("click", () => this.run(action, ""));
@@ -148,6 +148,7 @@ export class Actions {
       case "pace": return pace(studio, key === "Alt+PageUp" ? "faster" : "slower");
       case "walk": studio.setMode(studio.mode === "walk" ? "orbit" : "walk"); return true;
       case "map": studio.map = !studio.map; studio.tell("look"); return true;
+      case "speeds": studio.speeds = !studio.speeds; studio.tell("look"); return true;
       case "margins": studio.margins = !studio.margins; studio.tell("look"); return true;
       case "compare": parts.compare.open(); return true;
       case "order": order(studio, key === "Alt+ArrowUp" ? -1 : 1); return true;

@@ -202,6 +202,9 @@ studio.on(["document"], () => {
   const { kind } = session.mission;
   if (document.body.dataset.kind === kind) return;
   document.body.dataset.kind = kind;
+  // How fast it is where, is what a race is planned for.
+  studio.speeds = kind === "race";
+  studio.tell("look");
   // Missions of other kinds are edited by their options alone.
   const listed = ["film", "race", "scan", "explore", "light_painting"].includes(kind);
   byId("tab-film").textContent = labelOf(kind || "film");
@@ -232,6 +235,7 @@ studio.on(["selection"], () => {
 // After the surfaces that it is drawn around.
 new Hulls(studio, stage, solids);
 studio.on(["look"], () => byId("map").setAttribute("aria-pressed", String(studio.map)));
+studio.on(["look"], () => byId("speeds").setAttribute("aria-pressed", String(studio.speeds)));
 studio.on(["look"], () => byId("margins").setAttribute("aria-pressed", String(studio.margins)));
 studio.on(["mode"], () => {
   document.body.dataset.mode = studio.mode;

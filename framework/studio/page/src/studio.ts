@@ -31,6 +31,7 @@ export class Studio {
   rendered = true;             // a picture by the server while paused
   framing = false;             // clicks in the picture place the subject
   margins = false;             // hulls around obstacles
+  speeds = false;              // paths in the colours of their speed
   map = false;                 // the world from straight above
   outlined: PolygonKind = "region";    // what a drag draws in the mode `outline`
   // Of a scan: what is drawn, and the figure whose colours the surface has.
