@@ -20,6 +20,7 @@
 #include "framework/core/json.h"
 #include "framework/core/log.h"
 #include "framework/core/visible_text.h"
+#include "framework/export/episode_file.h"
 #include "framework/export/exporter.h"
 #include "framework/export/flight_report.h"
 
@@ -143,6 +144,10 @@ void write_files(const RunOutcome& outcome, const Registry& registry,
     logging::info("fails: " + to_line(check));
   files.log = capture.text();
   add_obstacles(outcome.result, files);
+  if (outcome.result.exploration)
+    for (auto& file : episode_files(*outcome.result.exploration, *files.plan,
+                                    std::string("lapwing ") + program_version()))
+      files.obstacles.push_back(std::move(file));
   outcome.target.write(files);
 }
 
@@ -156,7 +161,7 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
   ProgressLine progress("plan", std::cerr, progress_style_of_stderr(invocation.quiet),
                         columns_of_stderr(), &steady_seconds);
   const auto mission = load_mission(script, invocation, registry, &interruption.token(), &progress,
-                                    [&progress] { progress.clear(); });
+                                    [&progress] { progress.clear(); }, {.steps = true});
   registry.find("exporter", "csv");
   RunTarget target(mission->name(), invocation);
   RunOutcome outcome{.target = target};

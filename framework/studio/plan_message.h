@@ -15,6 +15,7 @@
 namespace lapwing {
 
 struct ExplorationRecord;  // export/exploration_report.h
+struct TakenImage;         // likewise
 struct ScanRecord;         // export/scan_report.h
 
 // `plan` of an answer. `distances`: with the distance to the nearest obstacle, whose shapes are
@@ -27,6 +28,9 @@ std::string certificate_message(const Certificate& certificate);
 
 // `samples` of a flight: the columns time, x, y, z, qw to qz of the camera, position_error.
 std::string flown_message(const FlownPath& flown, const Trajectory& planned);
+
+// `image` without its type, revision and `sights`.
+std::string image_message(const TakenImage& image);
 
 // What a mission was planned on beside its plan, each null where there is none.
 struct PlannedOn {
