@@ -128,6 +128,10 @@ export class Actions {
     const { parts } = this;
     const { studio } = parts;
     const size = shift ? SMALL : STEP;
+    if (studio.run && ["fly", "export", "report", "compare"].includes(action)) {
+      parts.notices.say("A run's folder is shown: go back to the mission first.");
+      return true;
+    }
     if (action !== "move" && action !== "lift" && action !== "escape") this.moves.finish();
     switch (action) {
       case "play": studio.play(!studio.playing); return true;

@@ -46,6 +46,7 @@ import { ExplorationView } from "./view/exploration_view";
 import { PaintingView } from "./view/painting_view";
 import { RaceView } from "./view/race_view";
 import { ScanView } from "./view/scan_view";
+import { SightView } from "./view/sight_view";
 import { Solids } from "./view/solids";
 import { Stage } from "./view/stage";
 import { Walk } from "./view/walk";
@@ -110,6 +111,7 @@ new Paths(studio, stage);
 new Gates(studio, stage);
 const scanned = new ScanView(studio, stage);
 const explored = new ExplorationView(studio, stage);
+const sights = new SightView(studio, stage);
 new PaintingView(studio, stage);
 new Pins(studio, stage, byId("pins"));
 const pick = new Pick(studio, stage, solids, gizmo);
@@ -323,6 +325,10 @@ Object.defineProperty(window, "lapwing", {
     get surface() { return scanned.triangles; },
     get views() { return session.world.scan?.views ?? []; },
     get grown() { return explored.count; },
+    get rays() { return sights.rays; },
+    get episode() { return studio.episode; },
+    get live() { return studio.live?.told.images.length ?? 0; },
+    get paused() { return studio.paused; },
     get game() { return game.figures; },
     get farthest() { return stage.worldCamera.far; },
     measure(on: boolean) { stage.measuring = on; },

@@ -52,7 +52,7 @@ export class Preview {
     const { studio } = this;
     if (studio.playing || !studio.rendered || !studio.session.welcomed) return;
     // What was explored is drawn here, as far as it had grown.
-    if (studio.session.world.exploration) return;
+    if (studio.episode) return;
     // The server draws what has converged.
     const { grade } = studio.standing;
     if (studio.session.dragging || grade === "guess" || grade === "step" || grade === "refused") {
