@@ -12,6 +12,7 @@
 #include "framework/app/plan_figures.h"
 #include "framework/app/progress_line.h"
 #include "framework/app/provenance.h"
+#include "framework/app/report_viewer.h"
 #include "framework/app/run_additions.h"
 #include "framework/app/run_outcome.h"
 #include "framework/app/run_target.h"
@@ -133,7 +134,8 @@ void write_files(const RunOutcome& outcome, const Registry& registry,
   std::vector<Section> own;
   for (const RunAddition& addition : outcome.additions)
     own.insert(own.end(), addition.sections.begin(), addition.sections.end());
-  files.report = report_page(outcome.result, outcome.status, std::move(own));
+  files.report = report_page(outcome.result, outcome.status, std::move(own),
+                             viewer_of(outcome.result, outcome.certificate));
   logging::info("status " + outcome.status);
   for (const std::string& note : all_notes(outcome.result)) logging::info(note);
   for (const RunAddition& addition : outcome.additions) {

@@ -37,6 +37,8 @@ struct PlannedOn {
   const ScanRecord* scan = nullptr;
   const ExplorationRecord* exploration = nullptr;
   std::vector<const Plan*> tours = {};  // of several batteries: all of them
+  // Small enough for a page that is a file: a coarse surface, and no triangles of maps.
+  bool coarse = false;
 };
 
 // The message `world`, and the blobs that it names. Surfaces that were drawn before are taken from

@@ -403,8 +403,8 @@ Frame WorkerErrands::save_report(const Frame& asked) const {
     loss.push_back(
         "the flight that was saved is another than the one on display: the script or a file that "
         "it reads has changed; reload the studio");
-  std::vector<std::string> names{"report.html", "plan.json", "trajectory.csv", "fleet.json",
-                                 "run.log"};
+  std::vector<std::string> names{"report.html", "plan.json",    "trajectory.csv",
+                                 "fleet.json",  "episode.json", "run.log"};
   for (std::size_t t = 0; fleet && t < answer.at("tours").as_list().size(); ++t) {
     const std::string number = std::to_string(t + 1);
     names.push_back(fleet_plan_name(t));

@@ -13,6 +13,7 @@ namespace lapwing {
 namespace {
 
 constexpr std::size_t kMostDrawn = 500;  // surfaces that are kept
+constexpr std::size_t kCoarseTriangles = 16000;
 
 Value place_of(const Eigen::Vector3d& v) {
   return Value(Value::List{v.x(), v.y(), v.z()});
@@ -169,7 +170,7 @@ WorldMessage world_message(const Plan& plan, const std::filesystem::path& folder
     one.set("opaque", obstacle.opaque);
     if (!obstacle.still()) one.set("track", track_of(obstacle));
     // What was explored is drawn by its growth.
-    const bool grown = on.exploration && obstacle.type == "map";
+    const bool grown = (on.exploration || on.coarse) && obstacle.type == "map";
     std::string blob = grown ? "" : blob_of(obstacle, plan, folder, drawn);
     if (!blob.empty()) {
       const std::string name = sha256(blob);
@@ -187,7 +188,9 @@ WorldMessage world_message(const Plan& plan, const std::filesystem::path& folder
   };
   if (on.scan && plan.task.scan) {
     Value& told = world.set("scan", scan_of(plan, *on.scan, on.tours));
-    if (on.scan->prediction) told.set("surface", put(prediction_ply(*on.scan->prediction)));
+    if (on.scan->prediction)
+      told.set("surface", put(on.coarse ? coarse_prediction(*on.scan->prediction, kCoarseTriangles)
+                                        : prediction_ply(*on.scan->prediction)));
   }
   if (on.exploration) {
     Value& told = world.set("exploration", exploration_value(*on.exploration));

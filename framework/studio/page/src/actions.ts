@@ -6,6 +6,7 @@ import { actionOf } from "./state/keys";
 import type { Vec3 } from "./state/types";
 import type { Rate, Studio } from "./studio";
 import { byId, forgetColours, typing } from "./view/dom";
+import { inReport } from "./view/report";
 import { duplicate, order, pace, remove, TURN, turn, type Selected } from "./panel/selected";
 import type { CompareDialog } from "./panel/compare";
 import type { ExportDialog, FlyDialog, HelpDialog } from "./panel/dialogs";
@@ -128,6 +129,10 @@ export class Actions {
     const { parts } = this;
     const { studio } = parts;
     const size = shift ? SMALL : STEP;
+    if (inReport && this.asksServer(action)) {
+      parts.notices.say("A report can be looked at. lapwing studio edits the mission.");
+      return true;
+    }
     if (studio.run && ["fly", "export", "report", "compare"].includes(action)) {
       parts.notices.say("A run's folder is shown: go back to the mission first.");
       return true;
@@ -217,6 +222,10 @@ export class Actions {
       case "escape": return this.escape();
       default: return false;
     }
+  }
+
+  private asksServer(action: string): boolean {
+    return ["fly", "export", "report", "race", "undo", "redo"].includes(action);
   }
 
   private escape(): boolean {

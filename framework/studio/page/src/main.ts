@@ -29,7 +29,9 @@ import { prismOf, siteLists } from "./state/site";
 import { trianglesOf } from "./state/shapes";
 import type { JsonObject, Vec3 } from "./state/types";
 import { Studio } from "./studio";
+import { blob as bytesOf } from "./view/blobs";
 import { byId, forgetColours } from "./view/dom";
+import { inReport, recorded, tellDrawn } from "./view/report";
 import { wireFraming } from "./view/framing";
 import { Gates } from "./view/gates";
 import { Gizmo } from "./view/gizmo";
@@ -90,7 +92,7 @@ const session = new Session({
     later: (ms, then) => window.setTimeout(then, ms),
     cancel: (id) => window.clearTimeout(id),
   },
-  connect: () => new WebSocket(
+  connect: () => inReport ? recorded(inReport) : new WebSocket(
     `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/session`) as Socket,
 });
 
@@ -259,11 +261,7 @@ studio.on(["world"], () => {
     const own = all[i];
     if (!blob || (own && trianglesOf(own)) || fetched.get(i) === blob) return;
     fetched.set(i, blob);
-    fetch(blob.startsWith("/") ? blob : `/blob/${blob}`)
-      .then((response) => {
-        if (!response.ok) throw new Error(`answer ${response.status}`);
-        return response.arrayBuffer();
-      })
+    bytesOf(blob)
       .then((buffer) => {
         solids.setBlob(i, trianglesIn(buffer));
         solids.set(obstacles());
@@ -340,4 +338,13 @@ Object.defineProperty(window, "lapwing", {
   }),
 });
 
+if (inReport) {
+  studio.rendered = false;      // nobody renders
+  // Once what is drawn has come.
+  session.on(({ what }) => {
+    if (what !== "welcome") return;
+    studio.seek(studio.duration);    // all that was found
+    stage.once(() => tellDrawn());
+  });
+}
 session.start();

@@ -5,6 +5,7 @@ import * as THREE from "three";
 import { growthIn, grownBy, imagesBy, type Growth, type LiveEpisode } from "../state/exploration";
 import type { ExplorationWorld } from "../state/types";
 import type { Studio } from "../studio";
+import { blob } from "./blobs";
 import type { Stage } from "./stage";
 
 const LIVE = "live";       // no blob
@@ -94,10 +95,7 @@ export class ExplorationView {
     this.voxels.visible = false;
     this.growth = null;
     if (!name) return;
-    fetch(`/blob/${name}`).then((response) => {
-      if (!response.ok) throw new Error(`answer ${response.status}`);
-      return response.arrayBuffer();
-    }).then((buffer) => {
+    blob(name).then((buffer) => {
       if (this.fetched === name) this.take(growthIn(buffer));
     }).catch((error: Error) => {
       if (this.fetched !== name) return;

@@ -8,6 +8,7 @@ import { viewAt } from "../state/samples";
 import type { CameraOptics } from "../state/types";
 import type { Studio } from "../studio";
 import { byId, el, sized } from "./dom";
+import { inReport } from "./report";
 import type { Stage } from "./stage";
 
 const STILL = 350;      // ms without a change, before a picture is asked for
@@ -191,6 +192,6 @@ export function previewControls(studio: Studio): HTMLElement {
   return el("div", { class: "row" }, framing,
     box("Guides", "Thirds, horizon and the subject's box (G)", () => studio.guides,
         (on) => { studio.guides = on; }),
-    box("Rendered", "On pause ask the server for a real picture when the film stands still",
+    !inReport && box("Rendered", "On pause ask the server for a real picture when the film stands still",
         () => studio.rendered, (on) => { studio.rendered = on; }));
 }

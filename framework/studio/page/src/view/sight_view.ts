@@ -5,6 +5,7 @@ import * as THREE from "three";
 import { imagesBy, Sights } from "../state/exploration";
 import type { Vec3 } from "../state/types";
 import type { Studio } from "../studio";
+import { blob } from "./blobs";
 import type { Stage } from "./stage";
 
 const MOST_KEPT = 64;     // blobs of single images
@@ -55,10 +56,7 @@ export class SightView {
   private fetch(name: string): void {
     while (this.fetched.size >= MOST_KEPT) this.fetched.delete(this.fetched.keys().next().value as string);
     this.fetched.set(name, null);
-    fetch(`/blob/${name}`).then((response) => {
-      if (!response.ok) throw new Error(`answer ${response.status}`);
-      return response.arrayBuffer();
-    }).then((buffer) => {
+    blob(name).then((buffer) => {
       this.fetched.set(name, new Sights(buffer));
       this.find();
     }).catch((error: Error) => {
