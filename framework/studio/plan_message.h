@@ -37,7 +37,7 @@ struct PlannedOn {
   const ScanRecord* scan = nullptr;
   const ExplorationRecord* exploration = nullptr;
   std::vector<const Plan*> tours = {};  // of several batteries: all of them
-  // Small enough for a page that is a file: a coarse surface, and no triangles of maps.
+  // Small enough for a page that is a file: a coarse surface in place of maps and meshes.
   bool coarse = false;
 };
 

@@ -169,9 +169,10 @@ WorldMessage world_message(const Plan& plan, const std::filesystem::path& folder
     one.set("side", obstacle.side == Side::keep_inside ? "keep_inside" : "keep_out");
     one.set("opaque", obstacle.opaque);
     if (!obstacle.still()) one.set("track", track_of(obstacle));
-    // What was explored is drawn by its growth.
-    const bool grown = (on.exploration || on.coarse) && obstacle.type == "map";
-    std::string blob = grown ? "" : blob_of(obstacle, plan, folder, drawn);
+    // What was explored is drawn by its growth, what is scanned by its coarse surface.
+    const bool known = obstacle.type == "map" || (on.coarse && obstacle.type == "mesh");
+    const bool left_out = known && (on.exploration || on.coarse);
+    std::string blob = left_out ? "" : blob_of(obstacle, plan, folder, drawn);
     if (!blob.empty()) {
       const std::string name = sha256(blob);
       one.set("blob", name);
