@@ -108,6 +108,7 @@ std::unique_ptr<Mission> load_mission(const fs::path& script, const Invocation& 
   settings.progress = progress;
   settings.observe_surface = observers.surface;
   settings.observe_tour = observers.tour;
+  settings.record_steps = observers.steps;
   settings.print = [quiet = invocation.quiet, before_print](const std::string& line) {
     logging::info(line);
     if (quiet) return;

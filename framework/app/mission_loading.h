@@ -19,6 +19,7 @@ struct MissionObservers {
   std::function<void(std::shared_ptr<const MeshScene>)> surface;
   // Every tour problem before it is solved.
   std::function<void(const ScanWork&, const TourDefinition&)> tour;
+  bool steps = false;  // as MissionSettings::record_steps
 };
 
 // What missions are loaded with, limits and observers apart. InputError when a data folder is none.

@@ -12,6 +12,7 @@
 #include "framework/app/plan_figures.h"
 #include "framework/app/progress_line.h"
 #include "framework/app/provenance.h"
+#include "framework/app/report_viewer.h"
 #include "framework/app/run_additions.h"
 #include "framework/app/run_outcome.h"
 #include "framework/app/run_target.h"
@@ -20,6 +21,7 @@
 #include "framework/core/json.h"
 #include "framework/core/log.h"
 #include "framework/core/visible_text.h"
+#include "framework/export/episode_file.h"
 #include "framework/export/exporter.h"
 #include "framework/export/flight_report.h"
 
@@ -132,7 +134,8 @@ void write_files(const RunOutcome& outcome, const Registry& registry,
   std::vector<Section> own;
   for (const RunAddition& addition : outcome.additions)
     own.insert(own.end(), addition.sections.begin(), addition.sections.end());
-  files.report = report_page(outcome.result, outcome.status, std::move(own));
+  files.report = report_page(outcome.result, outcome.status, std::move(own),
+                             viewer_of(outcome.result, outcome.certificate));
   logging::info("status " + outcome.status);
   for (const std::string& note : all_notes(outcome.result)) logging::info(note);
   for (const RunAddition& addition : outcome.additions) {
@@ -143,6 +146,10 @@ void write_files(const RunOutcome& outcome, const Registry& registry,
     logging::info("fails: " + to_line(check));
   files.log = capture.text();
   add_obstacles(outcome.result, files);
+  if (outcome.result.exploration)
+    for (auto& file : episode_files(*outcome.result.exploration, *files.plan,
+                                    std::string("lapwing ") + program_version()))
+      files.obstacles.push_back(std::move(file));
   outcome.target.write(files);
 }
 
@@ -156,7 +163,7 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
   ProgressLine progress("plan", std::cerr, progress_style_of_stderr(invocation.quiet),
                         columns_of_stderr(), &steady_seconds);
   const auto mission = load_mission(script, invocation, registry, &interruption.token(), &progress,
-                                    [&progress] { progress.clear(); });
+                                    [&progress] { progress.clear(); }, {.steps = true});
   registry.find("exporter", "csv");
   RunTarget target(mission->name(), invocation);
   RunOutcome outcome{.target = target};

@@ -73,7 +73,7 @@ void complete_plan(MissionResult& result, const Certificate& certificate,
 }
 
 std::string report_page(const MissionResult& result, const std::string& status,
-                        std::vector<Section> own) {
+                        std::vector<Section> own, std::optional<Viewer> viewer) {
   Report report = flight_report(result.plan, result.obstacle_folder);
   if (status == "cancelled") {
     report.status = "cancelled";
@@ -88,6 +88,7 @@ std::string report_page(const MissionResult& result, const std::string& status,
   }
   own.insert(own.end(), result.sections.begin(), result.sections.end());
   report.sections.insert(report.sections.begin() + 1, own.begin(), own.end());
+  report.viewer = std::move(viewer);
   return render_html(report);
 }
 

@@ -29,9 +29,10 @@ Value solver_figures(const MissionResult& result);
 void complete_plan(MissionResult& result, const Certificate& certificate,
                    const std::string& status);
 
-// The report of the plan, once it is complete; `own` come behind its summary.
+// The report of the plan, once it is complete; `own` come behind its summary. `viewer`: in place of
+// one of its pictures.
 std::string report_page(const MissionResult& result, const std::string& status,
-                        std::vector<Section> own);
+                        std::vector<Section> own, std::optional<Viewer> viewer = std::nullopt);
 
 // The files that the environment of the plan names.
 void add_obstacles(const MissionResult& result, RunFiles& files);

@@ -99,7 +99,8 @@ ExitStatus work_for_studio(const StudioRequest& asked, const Invocation& invocat
     return FleetVerdict{std::move(fleet.certificates), std::move(fleet.texts),
                         std::move(fleet.certificate)};
   };
-  run_studio_worker(asked.script, settings, judged, fleet_judged);
+  run_studio_worker(asked.script, settings, judged, fleet_judged,
+                    std::string("lapwing ") + program_version());
   return ExitStatus::done;
 }
 

@@ -100,13 +100,15 @@ class Candidates {
 class Explorer {
  public:
   Explorer(const EpisodeSettings& settings, const GroundTruth& truth, ObservedSurface& observed,
-           const ViewUtility& utility, Map& map, const EpisodeObserver& observer)
+           const ViewUtility& utility, Map& map, const EpisodeObserver& observer,
+           const ChoiceObserver& before)
       : settings_(settings),
         truth_(truth),
         observed_(observed),
         utility_(utility),
         map_(map),
         observer_(observer),
+        before_(before),
         means_(map),
         hidden_(map),
         graph_(map, Eigen::Vector3d::Constant(settings.body / 2),
@@ -140,6 +142,13 @@ class Explorer {
   double share_done() const;
   // Why it must not go on.
   std::optional<EpisodeEnd> stopped() const;
+  // What an observer does is not the explorer's time.
+  template <class Work>
+  void unhurried(Work work) {
+    const double before = wall_seconds();
+    work();
+    began_ += wall_seconds() - before;
+  }
   bool within_bounds(const Viewpoint& view) const {
     return !settings_.bounds || settings_.bounds->contains(view.position);
   }
@@ -150,6 +159,7 @@ class Explorer {
   const ViewUtility& utility_;
   Map& map_;
   const EpisodeObserver& observer_;
+  const ChoiceObserver& before_;
   MapMeans means_;
   HiddenVoxels hidden_;
   ViewpointGraph graph_;
@@ -367,6 +377,7 @@ EpisodeResult Explorer::run(const Viewpoint& start) {
     }
     int place = 0;
     if (!choose(taken, place)) break;
+    if (before_) unhurried([&] { before_({step_, known_, graph_[place]}); });
     look(taken, place);
     std::vector<Viewpoint> reachable;
     ++step_;  // new views are scored for the map as it is now
@@ -378,11 +389,7 @@ EpisodeResult Explorer::run(const Viewpoint& start) {
     taken.seconds = now - last;
     last = now;
     result_.steps.push_back(std::move(taken));
-    if (observer_) {
-      const double before = wall_seconds();
-      observer_({step_, known_, reachable, result_.steps.back()});
-      began_ += wall_seconds() - before;
-    }
+    if (observer_) unhurried([&] { observer_({step_, known_, reachable, result_.steps.back()}); });
   }
   if (settings_.list_candidates && result_.end != EpisodeEnd::cancelled &&
       result_.end != EpisodeEnd::time)
@@ -413,10 +420,11 @@ void Explorer::list_what_is_left() {
 
 EpisodeResult explore(const EpisodeSettings& settings, const Viewpoint& start,
                       const GroundTruth& truth, ObservedSurface& observed,
-                      const ViewUtility& utility, Map& map, const EpisodeObserver& observer) {
+                      const ViewUtility& utility, Map& map, const EpisodeObserver& observer,
+                      const ChoiceObserver& before) {
   require_sense(settings, map);
   map.set_threads(settings.threads);
-  Explorer explorer(settings, truth, observed, utility, map, observer);
+  Explorer explorer(settings, truth, observed, utility, map, observer, before);
   return explorer.run(start);
 }
 

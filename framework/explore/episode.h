@@ -97,6 +97,14 @@ struct EpisodeMoment {
 };
 using EpisodeObserver = std::function<void(const EpisodeMoment&)>;
 
+// Told before every image, when its view is chosen and the map is the one that it was chosen by.
+struct EpisodeChoice {
+  int step = 0;  // from 0 on
+  const EpisodeView& known;
+  const Viewpoint& view;
+};
+using ChoiceObserver = std::function<void(const EpisodeChoice&)>;
+
 // `map` is empty and counts observations. `truth` is the simulated world; `observed` belongs to it
 // and is asked by a utility that needs it. All outlive the call.
 //
@@ -105,7 +113,8 @@ using EpisodeObserver = std::function<void(const EpisodeMoment&)>;
 // range than the camera; whatever the utility's require_fit throws; settings without sense.
 EpisodeResult explore(const EpisodeSettings& settings, const Viewpoint& start,
                       const GroundTruth& truth, ObservedSurface& observed,
-                      const ViewUtility& utility, Map& map, const EpisodeObserver& observer = {});
+                      const ViewUtility& utility, Map& map, const EpisodeObserver& observer = {},
+                      const ChoiceObserver& before = {});
 
 // The same viewpoints again with a camera without noise, as table 5.4 does: what of the surface
 // they would have observed after each image.

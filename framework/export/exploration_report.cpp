@@ -65,6 +65,7 @@ Section growth(const ExplorationRecord& record) {
                             "after " + std::to_string(moment.images) + " images",
                             {}});
   }
+  strip.viewed = true;
   return {"Growth of the map", {strip}};
 }
 

@@ -45,6 +45,31 @@ struct GridSlices {
   std::vector<double> edges;                  // m, of the grid at each level
 };
 
+// A ray of a view through the map, to where it is occupied or the range of the camera ends.
+struct ExplorationRay {
+  Eigen::Vector3f end;        // m, world
+  float unknown_from = 1;     // share of its length at which it first meets an unknown voxel
+  std::uint32_t unknown = 0;  // voxels
+};
+
+// What a view was chosen by: the map around it before its image.
+struct ExplorationSight {
+  GridSlices grid;
+  std::vector<ExplorationRay> rays;
+};
+
+// An image while the exploration goes on.
+struct TakenImage {
+  std::string utility;
+  int image = 0, asked = 0;        // from 1 on; of so many
+  double surface = 0;              // voxels there are to find
+  double resolution = 0;           // m, of the map
+  ExplorationImage taken;
+  std::optional<double> observed;  // (5.2); with a noisy camera it is known at the end
+  std::vector<Eigen::Vector3f> grown;  // middles of voxels that are occupied for the first time
+  ExplorationSight sight;
+};
+
 struct ExplorationRecord {
   std::string utility;
   std::string end;                         // a sentence
@@ -61,7 +86,8 @@ struct ExplorationRecord {
   std::optional<double> cut;               // m, height above which they leave all out
   std::vector<ExplorationCandidate> candidates;  // at the end
   std::vector<ExplorationImage> images;
-  std::vector<GrownVoxel> growth;  // by image; empty where it was not asked for
+  std::vector<GrownVoxel> growth;        // by image; empty where it was not asked for
+  std::vector<ExplorationSight> sights;  // of each image; likewise
   double resolution = 0;           // m, of the map
   std::vector<GridSlices> grids;   // around the last view
 };

@@ -211,13 +211,14 @@ Section prediction_section(const ScanPrediction& p) {
     for (int corner = 0; p.counted[t] && corner < 3; ++corner) box.extend(mesh.corner(t, corner));
   if (box.isEmpty()) return section;
   const MeshScene scene(std::move(mesh));
-  section.blocks.push_back(picture_of(scene, box, 1.05,
-                                      "Predicted accuracy, from " +
-                                          number_text(1000 * range.best, 2) + " mm (yellow) to " +
-                                          number_text(1000 * range.worst, 2) +
-                                          " mm (violet), on a logarithmic scale. Red: images of "
-                                          "one place alone. Dark: no image. Light grey: "
-                                          "outside the region"));
+  Image first = picture_of(
+      scene, box, 1.05,
+      "Predicted accuracy, from " + number_text(1000 * range.best, 2) + " mm (yellow) to " +
+          number_text(1000 * range.worst, 2) +
+          " mm (violet), on a logarithmic scale. Red: images of one place alone. Dark: no image. "
+          "Light grey: outside the region");
+  first.viewed = true;
+  section.blocks.push_back(std::move(first));
   section.blocks.push_back(picture_of(scene, box, 1.05 + 3.14159, "The same from the other side"));
   return section;
 }

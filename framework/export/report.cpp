@@ -35,6 +35,13 @@ std::string base64(const std::string& bytes) {
   return out;
 }
 
+std::string replaced(std::string text, std::string_view from, std::string_view to) {
+  for (std::size_t at = text.find(from); at != std::string::npos;
+       at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+  return text;
+}
+
 // Its word, which is also the class that the style sheet knows it by.
 const char* mark_word(Mark mark) {
   switch (mark) {
@@ -70,7 +77,9 @@ class Page {
     for (std::size_t i = 0; i < report_.sections.size(); ++i) section(i);
     out_ += "</main>\n<script type=\"application/json\" id=\"report-data\">";
     out_ += report_data(report_);
-    out_ += "</script>\n<script>\n\"use strict\";\n(() => {\n";
+    out_ += "</script>\n";
+    if (viewed_) viewer(*report_.viewer);
+    out_ += "<script>\n\"use strict\";\n(() => {\n";
     out_ += kReportScript;
     out_ += "})();\n</script>\n</body>\n</html>\n";
     return std::move(out_);
@@ -214,13 +223,13 @@ class Page {
 
   void block(const Image& image) {
     require_png(image.png, image.caption);
-    out_ += "<figure class=\"block image wide\"><img alt=\"" + markup_text(image.caption) +
+    out_ += "<figure class=\"block image wide" + viewed(image.viewed) + "\"><img alt=\"" + markup_text(image.caption) +
             "\" src=\"data:image/png;base64," + base64(image.png) + "\"><figcaption>" +
             markup_text(image.caption) + "</figcaption></figure>\n";
   }
 
   void block(const FilmStrip& strip) {
-    out_ += "<figure class=\"block strip wide\"><figcaption>" + markup_text(strip.title) +
+    out_ += "<figure class=\"block strip wide" + viewed(strip.viewed) + "\"><figcaption>" + markup_text(strip.title) +
             "</figcaption>\n<div class=\"frames\">\n";
     for (const FilmFrame& frame : strip.frames) {
       require_png(frame.png, strip.title);
@@ -232,6 +241,26 @@ class Page {
       out_ += "</div>" + markup_text(frame.caption) + "</div>\n";
     }
     out_ += "</div></figure>\n";
+  }
+
+  // The first one that may be; its class says so to the style and to report_viewer.js.
+  std::string viewed(bool may) {
+    if (!may || viewed_ || !report_.viewer) return "";
+    viewed_ = true;
+    return " viewed";
+  }
+
+  void part(const std::string& id, const std::string& text) {
+    out_ += "<script type=\"text/plain\" id=\"viewer-" + id + "\">" + text + "</script>\n";
+  }
+
+  void viewer(const Viewer& viewer) {
+    // Nothing in them ends the element, or hides what follows.
+    part("page", base64(viewer.page));
+    part("style", replaced(viewer.style, "<", "\\3c "));
+    part("script", replaced(replaced(viewer.script, "</script", "<\\/script"), "<!--", "<\\!--"));
+    part("told", replaced(viewer.told, "<", "\\u003c"));
+    for (const auto& [name, bytes] : viewer.blobs) part(name, base64(bytes));
   }
 
   void frame_boxes(const FilmFrame& frame, const std::string& title) {
@@ -268,6 +297,7 @@ class Page {
   const Section* section_ = nullptr;
   bool wide_ = false;
   int drawn_ = 0;
+  bool viewed_ = false;
   std::string out_;
 };
 

@@ -6,7 +6,9 @@
 // Texts are plain, UTF-8, and may hold anything: they are escaped when rendered.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -169,6 +171,7 @@ struct Scene3D {
 struct Image {
   std::string png;      // the bytes of a PNG file
   std::string caption;  // also read out in place of the image
+  bool viewed = false;  // where scripts run, the report's viewer stands in its place
 };
 
 // Where a thing is in a frame, as shares of its width and height from the upper left corner; it may
@@ -189,6 +192,7 @@ struct FilmFrame {
 struct FilmStrip {
   std::string title;
   std::vector<FilmFrame> frames;
+  bool viewed = false;  // as of an image
 };
 
 using Block = std::variant<TextBlock, Facts, Table, Chart, PathView, Scene3D, Image, FilmStrip>;
@@ -198,12 +202,20 @@ struct Section {
   std::vector<Block> blocks;
 };
 
+// A page that shows what was planned in 3D, in a frame of its own: its files, and what it draws.
+struct Viewer {
+  std::string page, style, script;                          // app.css and app.js are put inside
+  std::string told;                                         // JSON, which the script reads
+  std::vector<std::pair<std::string, std::string>> blobs;   // that it names
+};
+
 struct Report {
   std::string title;
   std::string subtitle;
   std::string status;  // a badge, "certified"; none when empty
   Mark status_mark = Mark::none;
   std::vector<Section> sections;
+  std::optional<Viewer> viewer = {};  // in place of the first block that is `viewed`
 };
 
 // One self-contained page: style, script and data inside, no network, the same bytes for the same

@@ -38,9 +38,10 @@ bool is_numbered(const std::string& name, std::string_view stem,
          std::find(endings.begin(), endings.end(), name.substr(end)) != endings.end();
 }
 
-// obstacle_12.ply, obstacle_1.ot, prior.ply, prediction.ply, prediction.glb
+// obstacle_12.ply, obstacle_1.ot, prior.ply, prediction.ply, prediction.glb; of an episode
 bool names_obstacle(const std::string& name) {
   return name == "prior.ply" || name == "prediction.ply" || name == "prediction.glb" ||
+         name == "episode.json" || name == "episode_growth.bin" || name == "episode_sights.bin" ||
          is_numbered(name, "obstacle_", {".ply", ".ot"});
 }
 

@@ -30,7 +30,8 @@ struct RunFiles {
   std::optional<std::string> map = {};            // map.ot
   std::optional<std::string> long_exposure = {};  // long_exposure.png
   // Meshes and maps that the plan names: obstacle_1.ply, obstacle_2.ot, ..., map.ot, prior.ply; and
-  // the mesh of what a scan will show, prediction.ply and prediction.glb.
+  // the mesh of what a scan will show, prediction.ply and prediction.glb; and the
+  // episode of an exploration, episode.json, episode_growth.bin and episode_sights.bin.
   std::vector<std::pair<std::string, std::string>> obstacles = {};
   std::optional<std::string> fleet = {};  // fleet.json
   // In place of plan and trajectory, of each tour of a fleet: plan_1.json, report_1.html,

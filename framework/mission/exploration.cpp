@@ -7,6 +7,7 @@
 
 #include "framework/core/phases.h"
 #include "framework/explore/view_grid.h"
+#include "framework/explore/view_rays.h"
 
 namespace lapwing {
 
@@ -14,6 +15,9 @@ namespace {
 
 constexpr std::size_t kShownMoments = 4;
 constexpr int kMomentPixels = 480;
+
+// Of the sight of a view: the second finest grid of figures 5.4 to 5.7, and rays across an image.
+constexpr int kSightPoints = 16, kSightLevels = 4, kSightRays = 12;
 
 // Whether the map is shown after this many images of so many that are asked for.
 bool is_moment(int images, int steps) {
@@ -88,10 +92,13 @@ std::vector<ExplorationMoment> Moments::shown(int images, const Map& map) && {
   return drawn;
 }
 
-void Growth::look(int images, const Map& map) {
+std::vector<Eigen::Vector3f> Growth::look(int images, const Map& map) {
+  std::vector<Eigen::Vector3f> fresh;
   for_each_occupied(map, [&](const VoxelKey& key) {
-    first_.try_emplace(key.morton(), static_cast<std::uint32_t>(images));
+    if (first_.try_emplace(key.morton(), static_cast<std::uint32_t>(images)).second)
+      fresh.push_back(map.grid().center(key).cast<float>());
   });
+  return fresh;
 }
 
 std::vector<GrownVoxel> Growth::grown(const Map& map) && {
@@ -103,6 +110,43 @@ std::vector<GrownVoxel> Growth::grown(const Map& map) && {
   std::stable_sort(voxels.begin(), voxels.end(),
                    [](const GrownVoxel& a, const GrownVoxel& b) { return a.image < b.image; });
   return voxels;
+}
+
+GridSlices grid_slices(const EpisodeView& known, const Viewpoint& view, int points, int levels) {
+  const GridShape shape{points, points, points / 2, levels};
+  known.means->refresh(levels);
+  std::vector<float> grid(shape.size());
+  sample_grid(known, view, shape, grid);
+  GridSlices slices;
+  slices.points = points;
+  for (int level = 0; level < levels; ++level) {
+    slices.occupancy.push_back(slice_of(grid, shape, 2 * level, false));
+    slices.certainty.push_back(slice_of(grid, shape, 2 * level + 1, true));
+    slices.edges.push_back(points * std::ldexp(known.map->grid().resolution(), level + 1));
+  }
+  return slices;
+}
+
+ExplorationSight sight_of(const EpisodeView& known, const Viewpoint& view) {
+  ExplorationSight sight;
+  sight.grid = grid_slices(known, view, kSightPoints, kSightLevels);
+  const Map& map = *known.map;
+  const int step = std::max(1, known.pinhole.width / kSightRays);
+  for (const Eigen::Vector3d& direction : view_rays(view, known.pinhole, step)) {
+    double end = known.range, unknown_from = known.range;
+    ExplorationRay ray;
+    walk_ray(map, view.position, direction, known.range,
+             [&](const VoxelReading& reading, double distance) {
+               if (reading.state == VoxelState::unknown && ray.unknown++ == 0)
+                 unknown_from = distance;
+               if (reading.state == VoxelState::occupied) end = distance;
+               return reading.state != VoxelState::occupied;
+             });
+    ray.end = (view.position + end * direction).cast<float>();
+    ray.unknown_from = end > 0 ? static_cast<float>(std::min(unknown_from, end) / end) : 1;
+    sight.rays.push_back(ray);
+  }
+  return sight;
 }
 
 std::optional<double> cut_height(const MeshScene& scene, const Viewpoint& start) {
@@ -177,28 +221,19 @@ void record_grids(Exploration& e) {
   known.pinhole = e.settings.sensor.pinhole;
   known.range = e.settings.sensor.range;
   known.pitch = e.start.pitch;
-  for (const auto& [points, levels] : {std::pair{8, 5}, {16, 4}, {32, 3}, {64, 2}}) {
-    const GridShape shape{points, points, points / 2, levels};
-    means.refresh(levels);
-    std::vector<float> grid(shape.size());
-    sample_grid(known, e.result.steps.back().view, shape, grid);
-    GridSlices slices;
-    slices.points = points;
-    for (int level = 0; level < levels; ++level) {
-      slices.occupancy.push_back(slice_of(grid, shape, 2 * level, false));
-      slices.certainty.push_back(slice_of(grid, shape, 2 * level + 1, true));
-      slices.edges.push_back(points * std::ldexp(e.map->grid().resolution(), level + 1));
-    }
-    e.record.grids.push_back(std::move(slices));
-  }
+  for (const auto& [points, levels] : {std::pair{8, 5}, {16, 4}, {32, 3}, {64, 2}})
+    e.record.grids.push_back(grid_slices(known, e.result.steps.back().view, points, levels));
+}
+
+ExplorationImage image_of(const EpisodeStep& step) {
+  return {step.time, step.view.position, step.view.yaw, step.view.pitch, step.value, step.scored};
 }
 
 void record_flight(Exploration& e) {
   ExplorationRecord& record = e.record;
   for (const EpisodeStep& step : e.result.steps) {
     record.observed.push_back(step.observed);
-    record.images.push_back(
-        {step.time, step.view.position, step.view.yaw, step.view.pitch, step.value, step.scored});
+    record.images.push_back(image_of(step));
     e.seconds += step.seconds;
   }
   record.end = explain(e.result.end);

@@ -47,13 +47,20 @@ class Moments {
 // After which image each voxel became occupied.
 class Growth {
  public:
-  void look(int images, const Map& map);
+  // The middles of those that are occupied for the first time, m.
+  std::vector<Eigen::Vector3f> look(int images, const Map& map);
   // Those that are occupied at the end, by image.
   std::vector<GrownVoxel> grown(const Map& map) &&;
 
  private:
   std::unordered_map<std::uint64_t, std::uint32_t> first_;  // by morton code
 };
+
+// A middle slice of what a learned utility is shown around a view, with as many points ahead, across
+// and, of half of that, up. Level by level, the finest first.
+GridSlices grid_slices(const EpisodeView& known, const Viewpoint& view, int points, int levels);
+// What a view is chosen by: 16 points along an edge, 4 levels, and 12 x 9 rays.
+ExplorationSight sight_of(const EpisodeView& known, const Viewpoint& view);
 
 // Under a roof the picture from above is of what lies below the start: a room without its ceiling.
 std::optional<double> cut_height(const MeshScene& scene, const Viewpoint& start);
@@ -71,6 +78,7 @@ void record_grids(Exploration& exploration);
 // What an oracle would have seen from the same start.
 void compare_with_oracle(Exploration& exploration, const GroundTruth& truth,
                          const ObservedSurface::NewMap& new_map, const Registry& registry);
+ExplorationImage image_of(const EpisodeStep& step);
 // Figures, curve and path of the record, from the result.
 void record_flight(Exploration& exploration);
 

@@ -264,6 +264,24 @@ Viewpoint start_in(const GroundTruth& truth, const Parameters& given,
                          : "--set moves.clear=METRES --set moves.step=METRES"));
 }
 
+void tell_image(const Exploration& e, const EpisodeMoment& moment,
+                std::vector<Eigen::Vector3f> grown, const GroundTruth& truth,
+                const MissionRun& run) {
+  if (!run.settings.observe_image) return;
+  const EpisodeStep& step = moment.taken;
+  TakenImage image;
+  image.utility = e.record.utility;
+  image.image = moment.step + 1;
+  image.asked = e.settings.steps;
+  image.surface = static_cast<double>(truth.size());
+  image.resolution = e.map->grid().resolution();
+  image.taken = image_of(step);
+  if (!e.settings.sensor.noise && !e.settings.sensor.stereo) image.observed = step.observed;
+  image.grown = std::move(grown);
+  image.sight = e.record.sights.back();
+  run.settings.observe_image(image);
+}
+
 }  // namespace
 
 int explore_surface(lua_State* state) try {
@@ -294,12 +312,16 @@ int explore_surface(lua_State* state) try {
   e->record.cut = cut_height(truth.scene(), e->start);
   Moments moments(e->settings.steps, e->record.cut.value_or(HUGE_VAL));
   std::optional<Growth> growth;
-  if (run.settings.record_growth) growth.emplace();
-  e->result = explore(e->settings, e->start, truth, observed, *utility, *e->map,
-                      [&](const EpisodeMoment& moment) {
-                        moments.look(moment.step + 1, *e->map);
-                        if (growth) growth->look(moment.step + 1, *e->map);
-                      });
+  if (run.settings.record_steps) growth.emplace();
+  e->result = explore(
+      e->settings, e->start, truth, observed, *utility, *e->map,
+      [&](const EpisodeMoment& moment) {
+        moments.look(moment.step + 1, *e->map);
+        if (growth) tell_image(*e, moment, growth->look(moment.step + 1, *e->map), truth, run);
+      },
+      [&](const EpisodeChoice& choice) {
+        if (growth) e->record.sights.push_back(sight_of(choice.known, choice.view));
+      });
   if (growth) e->record.growth = std::move(*growth).grown(*e->map);
   observe_truly(e->result, e->settings, truth, new_map);
   e->record.moments = std::move(moments).shown(static_cast<int>(e->result.steps.size()), *e->map);

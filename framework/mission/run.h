@@ -32,6 +32,7 @@ namespace lapwing {
 struct ScriptTerm;  // script_terms.h
 
 struct ExplorationRecord;  // export/exploration_report.h
+struct TakenImage;         // likewise
 struct ScanRecord;         // export/scan_report.h
 struct ScanWork;           // scan_objects.h
 struct TourDefinition;
@@ -57,7 +58,11 @@ struct MissionSettings {
   const Registry* registry = nullptr;       // outlives the mission
   const CancellationToken* cancellation = nullptr;
   Progress* progress = nullptr;
-  bool record_growth = false;  // of explorations: when each voxel became occupied, for a viewer
+  // Of explorations, for a viewer: when each voxel became occupied, and what each view was chosen
+  // by.
+  bool record_steps = false;
+  // Of explorations, with `record_steps`: hears of each image, and may wait. May be null.
+  std::function<void(const TakenImage&)> observe_image = nullptr;
   std::function<void(const std::string&)> print = [](const std::string&) {};
   // Hears of the script and of every module that it requires before they are read; may be null.
   std::function<void(const std::filesystem::path&)> observe_script;

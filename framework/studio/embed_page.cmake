@@ -7,7 +7,10 @@ set(table "")
 set(count 0)
 foreach(file ${files})
   file(RELATIVE_PATH name ${FOLDER} ${file})
+  # A compiler's cache looks at the source alone: it must differ where a file does.
+  file(SHA256 ${file} checksum)
   string(APPEND parts
+    "// ${name} ${checksum}\n"
     "asm(\".section .rodata\\n.balign 16\\npage_file_${count}:\\n.incbin \\\"${file}\\\"\\n\"\n"
     "    \"page_file_${count}_end:\\n.byte 0\\n.text\\n\");\n"
     "extern \"C\" __attribute__((visibility(\"hidden\"))) const char page_file_${count}[],\n"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "framework/studio/page_assets.h"
 
+#include <algorithm>
+
 #include "framework/core/error.h"
 #include "framework/core/files.h"
 #include "framework/studio/embedded_page.h"
@@ -61,6 +63,12 @@ PageAssets PageAssets::built_in() {
         "--assets DIR serves one from a folder");
   assets.table_["/"] = assets.table_.at("/index.html");
   return assets;
+}
+
+bool PageAssets::has_page() {
+  const auto files = embedded_page();
+  return std::any_of(files.begin(), files.end(),
+                     [](const EmbeddedFile& file) { return file.path == "/index.html"; });
 }
 
 std::optional<WebContent> PageAssets::find(std::string_view path) const {

@@ -20,6 +20,8 @@ class PageAssets {
   // What was built in; InputError where nothing was.
   static PageAssets built_in();
 
+  // Whether a page was built in.
+  static bool has_page();
   // "/" is index.html. Nothing for a path that is not in the table, and for what is not text, a
   // script, a style, a picture or a font.
   std::optional<WebContent> find(std::string_view path) const;

@@ -13,6 +13,7 @@ using Type = PageMessageType;
 
 constexpr std::size_t kLongestName = 128;  // bytes, of ids, tabs and formats
 constexpr std::size_t kLongestLabel = 400;
+constexpr std::size_t kLongestFolder = 255;
 constexpr std::size_t kMostAfter = 64;  // as many as may wait
 constexpr std::size_t kMostPlayers = 8;
 constexpr std::int64_t kLargestNumber = (std::int64_t{1} << 53) - 1;
@@ -20,7 +21,8 @@ constexpr std::int64_t kLargestNumber = (std::int64_t{1} << 53) - 1;
 constexpr std::array kTypes{
     Type::hello,       Type::preview,        Type::gesture, Type::undo,    Type::redo,
     Type::rest,        Type::resolve_script, Type::fly,     Type::picture, Type::export_plan,
-    Type::save_report, Type::export_lua,     Type::race,    Type::stick};
+    Type::save_report, Type::export_lua,     Type::race,    Type::stick,   Type::list_runs,
+    Type::open_run,    Type::pace};
 
 Type type_named(const std::string& name) {
   for (const Type type : kTypes)
@@ -195,6 +197,22 @@ void read_sticks(MessageFields& fields, PageMessage& message) {
   }
 }
 
+Pace pace_named(const std::string& name) {
+  if (name == "run") return Pace::run;
+  if (name == "pause") return Pace::pause;
+  if (name == "step") return Pace::step;
+  throw InputError("pace: expected run, pause or step");
+}
+
+// One name: what lies elsewhere is not a page's to read.
+void read_run(MessageFields& fields, PageMessage& message) {
+  read_id(fields, message);
+  message.folder = fields.text("folder", kLongestFolder);
+  if (message.folder.find('/') != std::string::npos || message.folder.starts_with("."))
+    throw InputError("folder: expected the name of a folder in out/, as explore_city, not '" +
+                     message.folder + "'");
+}
+
 void read_fields(MessageFields& fields, PageMessage& message) {
   switch (message.type) {
     case Type::hello:
@@ -231,7 +249,13 @@ void read_fields(MessageFields& fields, PageMessage& message) {
       return read_export(fields, message);
     case Type::save_report:
     case Type::export_lua:
+    case Type::list_runs:
       return read_id(fields, message);
+    case Type::open_run:
+      return read_run(fields, message);
+    case Type::pace:
+      message.pace = pace_named(fields.text("pace", kLongestName));
+      return;
     case Type::race:
       return read_race(fields, message);
     case Type::stick:
@@ -271,6 +295,12 @@ const char* to_string(PageMessageType type) {
       return "race";
     case Type::stick:
       return "stick";
+    case Type::list_runs:
+      return "list_runs";
+    case Type::open_run:
+      return "open_run";
+    case Type::pace:
+      return "pace";
   }
   return "";
 }

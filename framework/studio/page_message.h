@@ -26,7 +26,12 @@ enum class PageMessageType {
   export_lua,
   race,
   stick,
+  list_runs,
+  open_run,
+  pace,
 };
+// Of the planning of an exploration.
+enum class Pace { run, pause, step };
 const char* to_string(PageMessageType type);
 
 struct PageMessage {
@@ -51,6 +56,8 @@ struct PageMessage {
   std::string format;               // of export
   Value parameters = Value::map();  // of the exporter
   bool uncertified = false;
+  Pace pace = Pace::run;
+  std::string folder;                              // open_run: a name in out/
   Value players = Value::list();                   // race: names and numbers of each
   std::vector<std::array<double, 2>> sticks = {};  // of stick: forward and left, -1 to 1
   std::size_t bytes = 0;                           // of its text

@@ -15,6 +15,7 @@
 namespace lapwing {
 
 struct ExplorationRecord;  // export/exploration_report.h
+struct TakenImage;         // likewise
 struct ScanRecord;         // export/scan_report.h
 
 // `plan` of an answer. `distances`: with the distance to the nearest obstacle, whose shapes are
@@ -28,11 +29,16 @@ std::string certificate_message(const Certificate& certificate);
 // `samples` of a flight: the columns time, x, y, z, qw to qz of the camera, position_error.
 std::string flown_message(const FlownPath& flown, const Trajectory& planned);
 
+// `image` without its type, revision and `sights`.
+std::string image_message(const TakenImage& image);
+
 // What a mission was planned on beside its plan, each null where there is none.
 struct PlannedOn {
   const ScanRecord* scan = nullptr;
   const ExplorationRecord* exploration = nullptr;
   std::vector<const Plan*> tours = {};  // of several batteries: all of them
+  // Small enough for a page that is a file: a coarse surface in place of maps and meshes.
+  bool coarse = false;
 };
 
 // The message `world`, and the blobs that it names. Surfaces that were drawn before are taken from

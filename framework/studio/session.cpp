@@ -94,6 +94,7 @@ void StudioSession::closed(PageSocket& page) {
   for (Errand& errand : errand_queue_)
     if (errand.from == &page) errand.from = nullptr;
   pages_.erase(&page);
+  if (pages_.empty()) pace(Pace::run);  // nobody is left who could
 }
 
 void StudioSession::received(PageSocket& page, std::string_view text) {
@@ -138,6 +139,11 @@ void StudioSession::welcome(Page& page) {
     changed.set("message", "the script changed on disk; your edits are kept until you choose");
     tell(page.socket.get(), changed);
   }
+  if (solve_ && solve_->revision && !solve_->held && solve_->rank < 1) {
+    for (const std::string& image : solve_->images)
+      page.socket->send(std::make_shared<const std::string>(image_text(image)));
+    if (solve_->paused) page.socket->send(std::make_shared<const std::string>(pace_text()));
+  }
   std::vector<std::string> remarks = remarks_;
   if (journal_ && !journal_->remark().empty()) remarks.push_back(journal_->remark());
   for (const std::string& what : remarks) {
@@ -180,6 +186,7 @@ std::string StudioSession::welcome_text() const {
 
 void StudioSession::take(PageSocket& page, const PageMessage& message) {
   if (message.type == Type::rest) return rest();
+  if (message.type == Type::pace) return pace(message.pace);
   if (!document_)
     return refuse(&page, message, "the script could not be loaded yet: " + script_error_);
   switch (message.type) {
@@ -265,6 +272,7 @@ void StudioSession::heard(WorkerRole role, Frame frame) {
     if (what == "world") world(frame);
     if (what == "progress") progress(frame);
     if (what == "estimate") estimated(frame);
+    if (what == "image") took_image(std::move(frame));
     return;
   }
   if (role == WorkerRole::errands) return errand_done(std::move(frame));

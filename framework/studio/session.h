@@ -113,6 +113,8 @@ class StudioSession {
     int crashes = 0;                        // of a process that was at it
     Frame frame = {};
     std::vector<Frame> answers = {};  // the last of each rank
+    std::vector<std::string> images = {};  // of an exploration so far, without a revision
+    bool paused = false;
   };
   struct Errand {
     std::int64_t serial = 0;
@@ -201,6 +203,10 @@ class StudioSession {
   void world(const Frame& frame);
   void progress(const Frame& frame);
   void estimated(const Frame& frame);
+  void took_image(Frame frame);
+  std::string image_text(const std::string& image) const;
+  void pace(Pace pace);
+  std::string pace_text() const;
   void solver_started();
   void add_errand(PageSocket& page, const PageMessage& message);
   Frame errand_frame(const PageMessage& message);

@@ -116,6 +116,7 @@ void StudioSession::solve_document(bool anew) {
     if (!solve_->held && solve_->revision == revision) return;
     solve_->held = false;
     solve_->revision = revision;
+    for (const std::string& image : solve_->images) tell_all(image_text(image));
     for (const Frame& frame : solve_->answers) deliver(frame);
     return;
   }
@@ -287,6 +288,45 @@ void StudioSession::progress(const Frame& frame) {
   tell_all(to_json(message, -1), true);
 }
 
+// An image of an exploration that is being planned. What was taken before a page came, or before
+// the edit had its revision, is told later.
+void StudioSession::took_image(Frame frame) {
+  if (!solve_ || !solve_->settled || solve_->rank > 0 ||
+      frame.header.at("serial") != Value(solve_->serial))
+    return;
+  std::string text = std::move(frame.parts.at(0));
+  text.pop_back();
+  text += ",\"sights\":\"" + surfaces_.put(std::move(frame.parts.at(1))) + "\"}";
+  solve_->images.push_back(std::move(text));
+  if (solve_->revision && !solve_->held) tell_all(image_text(solve_->images.back()));
+}
+
+std::string StudioSession::image_text(const std::string& image) const {
+  return "{\"type\":\"image\",\"revision\":" + std::to_string(*solve_->revision) + "," +
+         image.substr(1);
+}
+
+// Goes on, waits after the next image, or takes one more. Of what is planned now alone.
+void StudioSession::pace(Pace pace) {
+  if (!solve_ || !solve_->settled || solve_->rank > 0) return;
+  if (pace == Pace::run && !solve_->paused) return;
+  solve_->paused = pace != Pace::run;
+  Frame frame;
+  frame.header.set("do", "pace");
+  frame.header.set("serial", solve_->serial);
+  frame.header.set("paused", solve_->paused);
+  frame.header.set("step", pace == Pace::step);
+  solver_->send(std::move(frame));
+  tell_all(pace_text());
+}
+
+std::string StudioSession::pace_text() const {
+  Value message = Value::map();
+  message.set("type", "pace");
+  message.set("paused", solve_->paused);
+  return to_json(message, -1);
+}
+
 // What a drag of a scan comes to; then the next move's turn has come.
 void StudioSession::estimated(const Frame& frame) {
   if (!solve_ || solve_->revision || frame.header.at("serial") != Value(solve_->serial)) return;
@@ -386,6 +426,11 @@ Frame StudioSession::errand_frame(const PageMessage& message) {
         sticks.push_back(Value(Value::List{forward, left}));
       break;
     }
+    case Type::list_runs:
+      break;
+    case Type::open_run:
+      frame.header.set("run", message.folder);
+      break;
     default:
       throw InputError("not an errand");
   }
@@ -439,6 +484,19 @@ void StudioSession::errand_done(Frame frame) {
     message.set("id", errand.message.id);
     if (const Value* files = frame.header.find("files")) message.set("files", *files);
     raw = "," + frame.parts.at(0).substr(1, frame.parts.at(0).size() - 2);
+  } else if (errand.type == Type::list_runs) {
+    message.set("type", "runs");
+    message.set("id", errand.message.id);
+    message.set("folders", frame.header.at("folders"));
+  } else if (errand.type == Type::open_run) {
+    message.set("type", "run");
+    message.set("id", errand.message.id);
+    message.set("folder", frame.header.at("folder"));
+    Value exploration = frame.header.at("exploration");
+    exploration.set("growth", surfaces_.put(std::move(frame.parts.at(2))));
+    exploration.set("sights", surfaces_.put(std::move(frame.parts.at(3))));
+    message.set("exploration", std::move(exploration));
+    raw = ",\"plan\":" + frame.parts.at(0) + ",\"certificate\":" + frame.parts.at(1);
   } else {
     message.set("type", "wrote");
     message.set("id", errand.message.id);

@@ -15,6 +15,7 @@
 
 #include "framework/config/read_note.h"
 #include "framework/core/json.h"
+#include "framework/export/episode_file.h"
 #include "framework/mission/environment_source.h"
 #include "framework/studio/file_look.h"
 #include "framework/studio/plan_message.h"
@@ -60,12 +61,12 @@ double apart(const Trajectory& a, const Trajectory& b) {
 class StudioWorker {
  public:
   StudioWorker(const std::filesystem::path& script, const MissionSettings& settings,
-               MissionEditor::Judge judge, JudgeFleet judge_fleet)
+               MissionEditor::Judge judge, JudgeFleet judge_fleet, std::string program)
       : script_(script),
         settings_(settings),
         judge_(std::move(judge)),
         judge_fleet_(std::move(judge_fleet)),
-        errands_(script, settings_),
+        errands_(script, settings_, std::move(program)),
         editor_(
             script, settings_, [this](const EditedPlan& edited) { hear(edited); }, judge_) {}
 
@@ -91,9 +92,14 @@ class StudioWorker {
   void take(Frame frame) {
     const std::string what = frame.header.at("do").as_text();
     const std::lock_guard lock(mutex_);
-    if (what == "solve" || what == "drop") {
+    if (what == "pace") {
+      paused_ = frame.header.at("paused").as_boolean();
+      steps_ += frame.header.at("step").as_boolean();
+    } else if (what == "solve" || what == "drop") {
       end_solve();
       solve_.reset();
+      paused_ = false;
+      steps_ = 0;
       if (what == "solve") solve_ = std::move(frame);
     } else {
       waiting_.push_back(std::move(frame));
@@ -251,7 +257,11 @@ class StudioWorker {
     settings.cancellation = whole_.get();
     WorkerProgress progress([this](Frame told) { send(std::move(told), serial_); });
     settings.progress = &progress;
-    settings.record_growth = true;
+    settings.record_steps = true;
+    settings.observe_image = [this](const TakenImage& image) {
+      tell_image(image);
+      wait_while_paused();
+    };
     settings.scan_memory = scan_memory();
     // Modules that are required while it plans, as scenes are.
     settings.observe_script = [this](const std::filesystem::path& file) {
@@ -298,6 +308,20 @@ class StudioWorker {
     if (!before || moved > kSameWay) editor_.begin_at(edited.plan->trajectory);
     drawn_last_.reset();
     tell(edited);
+  }
+
+  void tell_image(const TakenImage& image) {
+    Frame frame;
+    frame.header.set("said", "image");
+    frame.parts = {image_message(image), sights_bytes({image.sight})};
+    send(std::move(frame), serial_);
+  }
+
+  void wait_while_paused() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock,
+                  [&] { return ended_ || whole_->cancelled() || !paused_ || steps_ > 0; });
+    if (paused_ && steps_ > 0) --steps_;
   }
 
   // Of the plan before, as long as the script and all that it has read are as they were.
@@ -452,15 +476,18 @@ class StudioWorker {
   std::optional<Frame> solve_;
   std::int64_t serial_ = 0;                   // of the solve under way
   std::shared_ptr<CancellationToken> whole_;  // likewise, where it is planned whole
+  bool paused_ = false;                       // an exploration, after each image
+  int steps_ = 0;                             // images that it may take all the same
   bool ended_ = false;
 };
 
 }  // namespace
 
 void run_studio_worker(const std::filesystem::path& script, const MissionSettings& settings,
-                       MissionEditor::Judge judge, JudgeFleet judge_fleet) {
+                       MissionEditor::Judge judge, JudgeFleet judge_fleet, std::string program) {
   std::signal(SIGINT, SIG_IGN);  // the server ends it
-  StudioWorker(script, settings, std::move(judge), std::move(judge_fleet)).run();
+  StudioWorker(script, settings, std::move(judge), std::move(judge_fleet), std::move(program))
+      .run();
 }
 
 }  // namespace lapwing

@@ -42,7 +42,8 @@ using JudgeFleet =
 // What is dragged is solved from the last point. A film that is `settled` is shown so as well, and
 // is then planned by its script from the beginning: that plan alone is judged, so that it is the
 // flight of `lapwing run`, whatever was drawn before.
+// `program`: name and version, as the folders of runs state them.
 void run_studio_worker(const std::filesystem::path& script, const MissionSettings& settings,
-                       MissionEditor::Judge judge, JudgeFleet judge_fleet);
+                       MissionEditor::Judge judge, JudgeFleet judge_fleet, std::string program);
 
 }  // namespace lapwing

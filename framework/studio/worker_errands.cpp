@@ -16,6 +16,7 @@
 #include "framework/core/files.h"
 #include "framework/core/json.h"
 #include "framework/core/png.h"
+#include "framework/export/episode_file.h"
 #include "framework/export/exporter.h"
 #include "framework/export/film_strip.h"
 #include "framework/export/flight_judgement.h"
@@ -34,6 +35,8 @@ namespace lapwing {
 namespace {
 
 namespace fs = std::filesystem;
+
+const fs::path kRuns = "out";  // where runs and this studio write
 
 Frame done() {
   Frame frame;
@@ -170,6 +173,8 @@ Frame WorkerErrands::answer(const Frame& asked) {
   if (what == "export") return export_plan(asked);
   if (what == "export_lua") return export_lua(asked);
   if (what == "save_report") return save_report(asked);
+  if (what == "list_runs") return list_runs();
+  if (what == "open_run") return open_run(asked);
   if (what == "race") return games_.begin(asked, plan_in(asked));
   if (what == "stick") return games_.stick(asked);
   throw Error("a working process does not know '" + what + "'");
@@ -398,8 +403,8 @@ Frame WorkerErrands::save_report(const Frame& asked) const {
     loss.push_back(
         "the flight that was saved is another than the one on display: the script or a file that "
         "it reads has changed; reload the studio");
-  std::vector<std::string> names{"report.html", "plan.json", "trajectory.csv", "fleet.json",
-                                 "run.log"};
+  std::vector<std::string> names{"report.html", "plan.json",    "trajectory.csv",
+                                 "fleet.json",  "episode.json", "run.log"};
   for (std::size_t t = 0; fleet && t < answer.at("tours").as_list().size(); ++t) {
     const std::string number = std::to_string(t + 1);
     names.push_back(fleet_plan_name(t));
@@ -411,6 +416,38 @@ Frame WorkerErrands::save_report(const Frame& asked) const {
   frame.header.set("files", std::move(files));
   frame.header.set("loss", std::move(loss));
   frame.header.set("status", answer.at("status"));
+  return frame;
+}
+
+// Folders of explorations, by name.
+Frame WorkerErrands::list_runs() const {
+  std::vector<std::string> names;
+  std::error_code code;
+  for (fs::directory_iterator item(kRuns, code); !code && item != fs::directory_iterator();
+       item.increment(code)) {
+    std::error_code ignored;
+    if (fs::is_regular_file(item->path() / "episode.json", ignored))
+      names.push_back(as_utf8(item->path().filename().string()));
+  }
+  std::sort(names.begin(), names.end());
+  Frame frame = done();
+  frame.header.set("folders", Value(Value::List(names.begin(), names.end())));
+  return frame;
+}
+
+// As the run judged it.
+Frame WorkerErrands::open_run(const Frame& asked) const {
+  const fs::path folder = kRuns / fs::path(asked.header.at("run").as_text());
+  if (const std::string why = complete_run_folder(folder); !why.empty()) throw InputError(why);
+  ShownEpisode shown = read_episode(folder, program_);
+  Frame frame = done();
+  frame.header.set("folder", folder.string());
+  frame.header.set("exploration", std::move(shown.exploration));
+  frame.parts = {plan_message(shown.plan, SolveReport{}, false),
+                 shown.plan.certificate.is_null()
+                     ? "null"
+                     : certificate_message(Certificate::from_value(shown.plan.certificate)),
+                 std::move(shown.growth), std::move(shown.sights)};
   return frame;
 }
 

@@ -34,8 +34,9 @@ Value options_with_file(Mission& mission);
 
 class WorkerErrands {
  public:
-  WorkerErrands(std::filesystem::path script, const MissionSettings& settings)
-      : script_(std::move(script)), settings_(settings) {}
+  // `program`: its name and version, as run folders state it.
+  WorkerErrands(std::filesystem::path script, const MissionSettings& settings, std::string program)
+      : script_(std::move(script)), settings_(settings), program_(std::move(program)) {}
 
   // Does what the frame asks for. InputError and what plugins throw come out.
   Frame answer(const Frame& asked);
@@ -52,6 +53,8 @@ class WorkerErrands {
   Frame export_plan(const Frame& asked);
   Frame export_lua(const Frame& asked) const;
   Frame save_report(const Frame& asked) const;
+  Frame list_runs() const;
+  Frame open_run(const Frame& asked) const;
   // With the shapes of its obstacles open.
   Plan with_shapes(const Frame& asked);
   void state_environment(const Plan& plan, const Value& layer,
@@ -59,6 +62,7 @@ class WorkerErrands {
 
   std::filesystem::path script_;
   const MissionSettings& settings_;
+  std::string program_;
   std::set<std::string> files_;
   std::string stated_layer_;  // whose environment is kept
   std::unique_ptr<Mission> stated_mission_;

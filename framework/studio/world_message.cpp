@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <bit>
-
 #include "framework/core/checksum.h"
 #include "framework/core/json.h"
-#include "framework/export/exploration_report.h"
+#include "framework/export/episode_file.h"
 #include "framework/export/prediction_mesh.h"
 #include "framework/export/prediction_report.h"
 #include "framework/export/scan_report.h"
@@ -15,6 +13,7 @@ namespace lapwing {
 namespace {
 
 constexpr std::size_t kMostDrawn = 500;  // surfaces that are kept
+constexpr std::size_t kCoarseTriangles = 16000;
 
 Value place_of(const Eigen::Vector3d& v) {
   return Value(Value::List{v.x(), v.y(), v.z()});
@@ -135,55 +134,27 @@ Value scan_of(const Plan& plan, const ScanRecord& record, const std::vector<cons
   return value;
 }
 
-Value exploration_of(const ExplorationRecord& record) {
-  Value value = Value::map();
-  value.set("utility", record.utility);
-  value.set("end", record.end);
-  value.set("surface", record.surface);
-  value.set("efficiency", record.efficiency);
-  value.set("resolution", record.resolution);
-  Value& images = value.set("images", Value::list());
-  for (std::size_t k = 0; k < record.images.size(); ++k) {
-    const ExplorationImage& image = record.images[k];
-    Value one = Value::map();
-    one.set("time", image.time);
-    one.set("position", place_of(image.position));
-    one.set("yaw", image.yaw);
-    one.set("pitch", image.pitch);
-    one.set("value", image.value);
-    one.set("scored", std::int64_t{image.scored});
-    one.set("observed", record.observed[k]);
-    images.push_back(std::move(one));
-  }
-  value.set("oracle", Value(Value::List(record.oracle.begin(), record.oracle.end())));
-  Value& candidates = value.set("candidates", Value::list());
-  for (const ExplorationCandidate& candidate : record.candidates) {
-    Value one = Value::map();
-    one.set("position", place_of(candidate.position));
-    one.set("direction", place_of(candidate.direction));
-    one.set("value", candidate.value);
-    candidates.push_back(std::move(one));
-  }
-  return value;
-}
-
-// The text "WLG1", then as 32-bit little-endian numbers the count of voxels, their edge (m), and
-// for each its middle (three floats, m) and its image.
-std::string growth_blob(const ExplorationRecord& record) {
-  static_assert(sizeof(GrownVoxel) == 16 && std::endian::native == std::endian::little);
-  std::string bytes = "WLG1";
-  const auto add = [&bytes](const void* data, std::size_t size) {
-    bytes.append(static_cast<const char*>(data), size);
-  };
-  const auto count = static_cast<std::uint32_t>(record.growth.size());
-  const auto edge = static_cast<float>(record.resolution);
-  add(&count, sizeof count);
-  add(&edge, sizeof edge);
-  add(record.growth.data(), record.growth.size() * sizeof(GrownVoxel));
-  return bytes;
-}
-
 }  // namespace
+
+std::string image_message(const TakenImage& image) {
+  Value value = image_value(image.taken, image.observed.value_or(0));
+  if (!image.observed) value.set("observed", Value());
+  value.set("utility", image.utility);
+  value.set("image", std::int64_t{image.image});
+  value.set("asked", std::int64_t{image.asked});
+  value.set("surface", image.surface);
+  value.set("resolution", image.resolution);
+  std::string text = to_json(value, -1), voxels;
+  for (const Eigen::Vector3f& middle : image.grown)
+    for (int i = 0; i < 3; ++i) {
+      char number[24];
+      std::snprintf(number, sizeof number, "%s%.3f", voxels.empty() ? "" : ",",
+                    static_cast<double>(middle[i]));
+      voxels += number;
+    }
+  text.pop_back();
+  return text + ",\"grown\":[" + voxels + "]}";
+}
 
 WorldMessage world_message(const Plan& plan, const std::filesystem::path& folder,
                            const PlannedOn& on, DrawnSurfaces& drawn) {
@@ -198,9 +169,10 @@ WorldMessage world_message(const Plan& plan, const std::filesystem::path& folder
     one.set("side", obstacle.side == Side::keep_inside ? "keep_inside" : "keep_out");
     one.set("opaque", obstacle.opaque);
     if (!obstacle.still()) one.set("track", track_of(obstacle));
-    // What was explored is drawn by its growth.
-    const bool grown = on.exploration && obstacle.type == "map";
-    std::string blob = grown ? "" : blob_of(obstacle, plan, folder, drawn);
+    // What was explored is drawn by its growth, what is scanned by its coarse surface.
+    const bool known = obstacle.type == "map" || (on.coarse && obstacle.type == "mesh");
+    const bool left_out = known && (on.exploration || on.coarse);
+    std::string blob = left_out ? "" : blob_of(obstacle, plan, folder, drawn);
     if (!blob.empty()) {
       const std::string name = sha256(blob);
       one.set("blob", name);
@@ -217,11 +189,14 @@ WorldMessage world_message(const Plan& plan, const std::filesystem::path& folder
   };
   if (on.scan && plan.task.scan) {
     Value& told = world.set("scan", scan_of(plan, *on.scan, on.tours));
-    if (on.scan->prediction) told.set("surface", put(prediction_ply(*on.scan->prediction)));
+    if (on.scan->prediction)
+      told.set("surface", put(on.coarse ? coarse_prediction(*on.scan->prediction, kCoarseTriangles)
+                                        : prediction_ply(*on.scan->prediction)));
   }
   if (on.exploration) {
-    Value& told = world.set("exploration", exploration_of(*on.exploration));
-    if (!on.exploration->growth.empty()) told.set("growth", put(growth_blob(*on.exploration)));
+    Value& told = world.set("exploration", exploration_value(*on.exploration));
+    if (!on.exploration->growth.empty()) told.set("growth", put(growth_bytes(*on.exploration)));
+    if (!on.exploration->sights.empty()) told.set("sights", put(sights_bytes(on.exploration->sights)));
   }
   message.text = to_json(world, -1);
   return message;

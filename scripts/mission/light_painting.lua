@@ -38,6 +38,10 @@ local DECLARATIONS = {
     summary = "viewing direction of the spectators; 90: from south to north" },
   { name = "reorder", type = "boolean", default = true,
     summary = "reorder and reverse strokes to shorten the flight" },
+  { name = "gap", type = "number", unit = "s", default = 0, minimum = 0, maximum = 60,
+    summary = "time at rest in the dark before each further stroke; 0: the flight does not stop" },
+  { name = "facing", type = "choice", default = "east", choices = { "east", "camera" },
+    summary = "where the front of the vehicle points: east, or to the camera of the exposure" },
   { name = "vehicle", type = "vehicle", default = "vehicles/solo", summary = "vehicle" },
   { name = "speed", type = "number", unit = "m/s", default = 1.5, minimum = 0.01,
     summary = "largest speed, in addition to the limits of the vehicle" },
@@ -101,6 +105,53 @@ local function stages_of(o, duration)
   return nil, text .. "; draw smaller (height), less, or faster (speed, acceleration)"
 end
 
+-- The timed path and when the light is on: with a gap from rest to rest, stroke by stroke.
+local function timed_with_gaps(run, strokes, limits, gap)
+  local made, lights, now = { points = {}, times = {} }, {}, 0
+  local function fly(points)
+    limits.points = paths.flat(points)
+    local timed = run:time_path(limits)
+    table.move(timed.points, 1, #timed.points, #made.points + 1, made.points)
+    for _, time in ipairs(timed.times) do made.times[#made.times + 1] = now + time end
+    now = made.times[#made.times]
+  end
+  for i, stroke in ipairs(strokes) do
+    local before = strokes[i - 1]
+    if before then
+      if paths.distance(before[#before], stroke[1]) > 1e-6 then
+        fly { before[#before], stroke[1] }
+      end
+      now = now + gap
+    end
+    local start = now
+    fly(stroke)
+    lights[i] = { start = start, finish = now }
+  end
+  return made, lights
+end
+
+local function timed_at_once(run, strokes, limits)
+  local path, lit = drawings.joined(strokes)
+  limits.points = paths.flat(path)
+  local timed = run:time_path(limits)
+  local lights = {}
+  for _, span in ipairs(lit) do
+    local light = { start = at_share(timed.times, span[1]),
+                    finish = at_share(timed.times, span[2]) }
+    local before = lights[#lights]
+    if before and light.start <= before.finish then before.finish = light.finish
+    else lights[#lights + 1] = light end
+  end
+  return timed, lights
+end
+
+-- Rad: of the view, turned about, between -pi and pi.
+local function heading_of(o)
+  if o.facing == "east" then return 0 end
+  local yaw = math.rad(o.view_yaw_deg) + math.pi
+  return math.atan(math.sin(yaw), math.cos(yaw))
+end
+
 local function solved(run, timed, vehicle)
   local o = run.options
   local duration = timed.times[#timed.times]
@@ -116,10 +167,13 @@ local function solved(run, timed, vehicle)
                                yaw = { weight = 1 }, effort = o.weights.effort, inputs = {} })
   point_mass.must_rest(run, p, "model", "a light painting begins and ends at rest")
   local first, last = places[1].value, places[count].value
-  p:add_constraint { type = "boundary_state", start_yaw = 0, start_position = first,
+  local heading = heading_of(o)
+  p:add_constraint { type = "boundary_state", start_yaw = heading, start_position = first,
                      finish_position = last }
   local times, positions, yaws = {}, {}, {}
-  for i, place in ipairs(places) do times[i], positions[i], yaws[i] = place.time, place.value, 0 end
+  for i, place in ipairs(places) do
+    times[i], positions[i], yaws[i] = place.time, place.value, heading
+  end
   p:guess_path { times = times, positions = positions, yaws = yaws }
   p:finish()
   return run:solve(p, o.solver), nil, duration / (count - 1)
@@ -168,25 +222,18 @@ local function painted(run)
   end
   if o.reorder then drawn = order.short(drawn) end
   local strokes = drawings.placed(drawn, unit, o)
-  local path, lit = drawings.joined(strokes)
   local fastest = 0.95 * math.min(vehicle.speed_across, vehicle.climb_speed, vehicle.descent_speed)
   local strongest = 0.9 * vehicle.acceleration_across
   local share, best = 1, nil
   while true do
     run:phase(share == 1 and "painting" or string.format("painting at %.2g of the speed", share))
-    local timed = run:time_path {
-      points = paths.flat(path), spacing = SPACING, rounding = o.rounding,
-      speed = share * math.min(o.speed, fastest),
+    local limits = {
+      spacing = SPACING, rounding = o.rounding, speed = share * math.min(o.speed, fastest),
       acceleration = share ^ 2 * math.min(o.acceleration, strongest),
     }
-    local lights = {}
-    for i, span in ipairs(lit) do
-      local light = { start = at_share(timed.times, span[1]),
-                      finish = at_share(timed.times, span[2]) }
-      local before = lights[#lights]
-      if before and light.start <= before.finish then before.finish = light.finish
-      else lights[#lights + 1] = light end
-    end
+    local timed, lights
+    if o.gap > 0 then timed, lights = timed_with_gaps(run, strokes, limits, o.gap)
+    else timed, lights = timed_at_once(run, strokes, limits) end
     local solution, too_long, step = solved(run, timed, vehicle)
     if not solution and not best then run:fail(o.step and "step" or "speed", too_long) end
     if solution then

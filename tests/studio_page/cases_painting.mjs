@@ -2,11 +2,10 @@
 // A light painting with the studio's own server: a stroke by mouse in place of a text, another by
 // keyboard, planned, certified and exported; the long exposure as it grows.
 import assert from "node:assert/strict";
-import { statSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
-import { centreOf, studioState, waitGrade, waitRevision } from "./browser.mjs";
-import { served } from "./served.mjs";
+import { centreOf, studioState, type, waitGrade, waitRevision } from "./browser.mjs";
+import { exported, served } from "./served.mjs";
 
 const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
 const PLANNED = 60000;   // ms at most
@@ -58,17 +57,41 @@ export const painting = (browser, shot) => served(browser, shot, {
   await page.click("#undo");
   await waitRevision(page, revision + 4);
   await waitGrade(page, "certified", PLANNED);
+  await orderGapsFacing(page, picture);
   // A picture of lines.
   await (await page.$("#svg-file")).uploadFile(join(root, "examples/light_painting/heart.svg"));
-  await waitRevision(page, revision + 5);
+  await page.waitForFunction("window.lapwing.document.strokes.length === 1");
   assert.ok((await studioState(page)).document.strokes.length > 0);
   await waitGrade(page, "certified", PLANNED);
-  await picture("painting_04_svg");
-  await page.click("#export");
-  await page.select("#export-format", "csv");
-  await page.click("#export-go");
-  await page.waitForSelector("#export-result .written");
-  for (const file of await page.$$eval("#export-result code", (all) => all.map((e) => e.textContent))) {
-    assert.ok(statSync(file).size > 1000, file);
-  }
+  await picture("painting_05_svg");
+  await exported(page);
 });
+
+// Two strokes with a pause before the second: by keyboard; facing the camera: by mouse. The error of
+// the drawing is told.
+async function orderGapsFacing(page, picture) {
+  const lights = () => page.$$eval("#light-list .what", (all) => all.map((e) => e.textContent));
+  assert.deepEqual(await lights(), ["light", "dark", "light"]);
+  assert.match(await page.$eval("#drawing-error", (e) => e.textContent),
+               /^The light is [\d.]+ mm from the strokes on average as planned, [\d.]+ mm as flown; at most [\d.]+ mm/);
+  const dark = async () => Number((await page.$$eval("#light-list .when", (all) => all.map((e) => e.textContent)))[1]
+    .replace(" s", ""));
+  const before = await dark();
+  const { revision } = await studioState(page);
+  await page.focus('[data-key="gap"]');
+  await type(page, '[data-key="gap"]', "2");
+  await waitRevision(page, revision + 1);
+  await waitGrade(page, "certified", PLANNED);
+  assert.ok(await dark() > Math.max(2, before), `${await dark()} s after ${before} s`);
+  await page.select('[data-key="facing"]', "camera");
+  await waitRevision(page, revision + 2);
+  await waitGrade(page, "certified", PLANNED);
+  await page.click('[data-key="reorder"]');
+  await waitRevision(page, revision + 3);
+  assert.equal((await studioState(page)).document.reorder, false);
+  await waitGrade(page, "certified", PLANNED);
+  // To the second light by its row.
+  await page.click('[data-key="light-2"]');
+  assert.ok((await studioState(page)).time > 2);
+  await picture("painting_04_gaps");
+}

@@ -7,7 +7,7 @@ import { readFileSync, statSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { drag, studioState, waitGrade, waitRevision } from "./browser.mjs";
 import { lapwing } from "./cases_film.mjs";
-import { served } from "./served.mjs";
+import { exported, served } from "./served.mjs";
 
 const PLANNED = 90000;          // ms at most
 const SEEN = 50;                // ms asked, from a key to the picture
@@ -68,15 +68,32 @@ export const race = (browser, shot) => served(browser, shot, {
                              { timeout: PLANNED });
   await picture("race_03_flown_often");
   await page.click("#fly-dialog .close");
-  await page.click("#export");
-  await page.select("#export-format", "csv");
-  await page.click("#export-go");
-  await page.waitForSelector("#export-result .written");
-  const files = await page.$$eval("#export-result code", (all) => all.map((e) => e.textContent));
-  for (const file of files) assert.ok(statSync(file).size > 1000, file);
-  await page.click("#export-dialog .close");
+  const files = await exported(page);
+  await speeds(page, readFileSync(files[0], "utf8"));
   await playAndReplay(page, picture);
 });
+
+// The colours of the path say the speeds of the exported plan; a key and a button hide them.
+async function speeds(page, csv) {
+  const [names, ...rows] = csv.trim().split("\n").filter((line) => !line.startsWith("#"))
+    .map((line) => line.split(","));
+  const at = ["velocity_x", "velocity_y", "velocity_z"].map((name) =>
+    names.findIndex((own) => own.includes(name)));
+  assert.ok(at.every((k) => k >= 0), names.join());
+  const all = rows.map((row) => Math.hypot(...at.map((k) => Number(row[k]))));
+  const said = await page.$eval("#speed-scale", (e) => e.textContent);
+  const [low, high] = said.match(/[\d.]+(e-\d+)?/g).map(Number);
+  assert.ok(Math.abs(high - Math.max(...all)) < 6e-3 * high, `${said}: ${Math.max(...all)}`);
+  assert.ok(Math.abs(low - Math.min(...all)) < 6e-3 * high, `${said}: ${Math.min(...all)}`);
+  assert.match(said, /^0 to/);   // it starts at rest
+  const shown = () => page.$eval("#speed-legend", (e) => e.offsetParent !== null);
+  assert.ok(await shown());
+  await page.click("#speeds");
+  assert.ok(!await shown());
+  await page.evaluate(() => document.activeElement.blur());
+  await page.keyboard.press("s");
+  assert.ok(await shown());
+}
 
 // One flies well, the other badly; a pause in between.
 async function playAndReplay(page, picture) {

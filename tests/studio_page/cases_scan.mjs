@@ -2,10 +2,10 @@
 // A scan with the studio's own server: a region drawn on the map, a zone moved by keyboard, planned
 // and certified; its figures, its holes, the surface under a click; exported.
 import assert from "node:assert/strict";
-import { existsSync, readFileSync, statSync, writeFileSync } from "node:fs";
+import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { centreOf, studioState, type, waitGrade, waitRevision } from "./browser.mjs";
-import { served } from "./served.mjs";
+import { exported, served } from "./served.mjs";
 
 const PLANNED = 120000;   // ms at most
 const options = ["--config", "scan/small", "--set", "resolution=1", "--set", "tour.budget=90",
@@ -164,10 +164,5 @@ export const scan = (browser, shot) => served(browser, shot, {
   assert.ok(existsSync(run), run);
   const told = await words(page);
   assert.ok(readFileSync(run, "utf8").includes(told.slice(0, 60)), told);
-  await page.click("#export");
-  await page.select("#export-format", "csv");
-  await page.click("#export-go");
-  await page.waitForSelector("#export-result .written");
-  const files = await page.$$eval("#export-result code", (all) => all.map((e) => e.textContent));
-  for (const file of files) assert.ok(statSync(file).size > 1000, file);
+  await exported(page);
 });

@@ -11,6 +11,7 @@ import { film } from "./cases_film.mjs";
 import { links } from "./cases_link.mjs";
 import { painting } from "./cases_painting.mjs";
 import { race } from "./cases_race.mjs";
+import { report } from "./cases_report.mjs";
 import { scan } from "./cases_scan.mjs";
 import { views } from "./cases_view.mjs";
 import { worlds } from "./cases_world.mjs";
@@ -85,7 +86,7 @@ try {
     if (shots) await page.screenshot({ path: join(shots, `${file}.png`) });
   };
   // With servers of their own; that of the film measures times.
-  const served = Object.entries({ scan, race, painting, explore })
+  const served = Object.entries({ scan, race, painting, explore, report })
     .filter(([name]) => !only || only === name);
   await Promise.all(browsers.map(async (browser) => {
     for (let next = served.shift(); next; next = served.shift()) {

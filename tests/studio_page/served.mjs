@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A case with the studio's own server, in a folder of its own: started, told, stopped.
 import assert from "node:assert/strict";
+import { statSync } from "node:fs";
 import { openPage } from "./browser.mjs";
 import { hasStudio, startStudio } from "./cases_film.mjs";
 
@@ -31,4 +32,17 @@ export async function served(browser, shot, { name, script, options = [], pictur
     await page?.close({ runBeforeUnload: false }).catch(() => {});
     await studio.stop();
   }
+}
+
+// Exports by the dialog, which is closed again; the files, none of which is empty.
+export async function exported(page, format = "csv") {
+  await page.click("#export");
+  await page.select("#export-format", format);
+  await page.click("#export-go");
+  await page.waitForSelector("#export-result .written");
+  const files = await page.$$eval("#export-result code", (all) => all.map((e) => e.textContent));
+  assert.ok(files.length > 0);
+  for (const file of files) assert.ok(statSync(file).size > 1000, file);
+  await page.click("#export-dialog .close");
+  return files;
 }

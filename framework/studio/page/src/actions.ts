@@ -6,6 +6,7 @@ import { actionOf } from "./state/keys";
 import type { Vec3 } from "./state/types";
 import type { Rate, Studio } from "./studio";
 import { byId, forgetColours, typing } from "./view/dom";
+import { inReport } from "./view/report";
 import { duplicate, order, pace, remove, TURN, turn, type Selected } from "./panel/selected";
 import type { CompareDialog } from "./panel/compare";
 import type { ExportDialog, FlyDialog, HelpDialog } from "./panel/dialogs";
@@ -90,7 +91,7 @@ export class Actions {
       undo: "undo", redo: "redo", fly: "fly", export: "export", report: "report", theme: "theme",
       help: "help", place: "place", insert: "insert", "add-subject": "subject", "fly-camera": "fly-camera", "keyframe-here": "keyframe-here",
       frame: "frame", play: "play", cut: "cut", draw: "draw", margins: "margins", compare: "compare",
-      "map": "map", "place-gate": "place", "add-gate": "insert", "race-it": "race", "place-start": "place",
+      "map": "map", "speeds": "speeds", "place-gate": "place", "add-gate": "insert", "race-it": "race", "place-start": "place",
     };
     for (const [id, action] of Object.entries(simple)) {
       byId(id).addEventListener("click", () => this.run(action, ""));
@@ -128,6 +129,14 @@ export class Actions {
     const { parts } = this;
     const { studio } = parts;
     const size = shift ? SMALL : STEP;
+    if (inReport && this.asksServer(action)) {
+      parts.notices.say("A report can be looked at. lapwing studio edits the mission.");
+      return true;
+    }
+    if (studio.run && ["fly", "export", "report", "compare"].includes(action)) {
+      parts.notices.say("A run's folder is shown: go back to the mission first.");
+      return true;
+    }
     if (action !== "move" && action !== "lift" && action !== "escape") this.moves.finish();
     switch (action) {
       case "play": studio.play(!studio.playing); return true;
@@ -148,6 +157,7 @@ export class Actions {
       case "pace": return pace(studio, key === "Alt+PageUp" ? "faster" : "slower");
       case "walk": studio.setMode(studio.mode === "walk" ? "orbit" : "walk"); return true;
       case "map": studio.map = !studio.map; studio.tell("look"); return true;
+      case "speeds": studio.speeds = !studio.speeds; studio.tell("look"); return true;
       case "margins": studio.margins = !studio.margins; studio.tell("look"); return true;
       case "compare": parts.compare.open(); return true;
       case "order": order(studio, key === "Alt+ArrowUp" ? -1 : 1); return true;
@@ -212,6 +222,10 @@ export class Actions {
       case "escape": return this.escape();
       default: return false;
     }
+  }
+
+  private asksServer(action: string): boolean {
+    return ["fly", "export", "report", "race", "undo", "redo"].includes(action);
   }
 
   private escape(): boolean {

@@ -29,7 +29,9 @@ import { prismOf, siteLists } from "./state/site";
 import { trianglesOf } from "./state/shapes";
 import type { JsonObject, Vec3 } from "./state/types";
 import { Studio } from "./studio";
+import { blob as bytesOf } from "./view/blobs";
 import { byId, forgetColours } from "./view/dom";
+import { inReport, recorded, tellDrawn } from "./view/report";
 import { wireFraming } from "./view/framing";
 import { Gates } from "./view/gates";
 import { Gizmo } from "./view/gizmo";
@@ -46,6 +48,7 @@ import { ExplorationView } from "./view/exploration_view";
 import { PaintingView } from "./view/painting_view";
 import { RaceView } from "./view/race_view";
 import { ScanView } from "./view/scan_view";
+import { SightView } from "./view/sight_view";
 import { Solids } from "./view/solids";
 import { Stage } from "./view/stage";
 import { Walk } from "./view/walk";
@@ -89,7 +92,7 @@ const session = new Session({
     later: (ms, then) => window.setTimeout(then, ms),
     cancel: (id) => window.clearTimeout(id),
   },
-  connect: () => new WebSocket(
+  connect: () => inReport ? recorded(inReport) : new WebSocket(
     `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/session`) as Socket,
 });
 
@@ -110,6 +113,7 @@ new Paths(studio, stage);
 new Gates(studio, stage);
 const scanned = new ScanView(studio, stage);
 const explored = new ExplorationView(studio, stage);
+const sights = new SightView(studio, stage);
 new PaintingView(studio, stage);
 new Pins(studio, stage, byId("pins"));
 const pick = new Pick(studio, stage, solids, gizmo);
@@ -202,6 +206,9 @@ studio.on(["document"], () => {
   const { kind } = session.mission;
   if (document.body.dataset.kind === kind) return;
   document.body.dataset.kind = kind;
+  // How fast it is where, is what a race is planned for.
+  studio.speeds = kind === "race";
+  studio.tell("look");
   // Missions of other kinds are edited by their options alone.
   const listed = ["film", "race", "scan", "explore", "light_painting"].includes(kind);
   byId("tab-film").textContent = labelOf(kind || "film");
@@ -232,6 +239,7 @@ studio.on(["selection"], () => {
 // After the surfaces that it is drawn around.
 new Hulls(studio, stage, solids);
 studio.on(["look"], () => byId("map").setAttribute("aria-pressed", String(studio.map)));
+studio.on(["look"], () => byId("speeds").setAttribute("aria-pressed", String(studio.speeds)));
 studio.on(["look"], () => byId("margins").setAttribute("aria-pressed", String(studio.margins)));
 studio.on(["mode"], () => {
   document.body.dataset.mode = studio.mode;
@@ -253,11 +261,7 @@ studio.on(["world"], () => {
     const own = all[i];
     if (!blob || (own && trianglesOf(own)) || fetched.get(i) === blob) return;
     fetched.set(i, blob);
-    fetch(blob.startsWith("/") ? blob : `/blob/${blob}`)
-      .then((response) => {
-        if (!response.ok) throw new Error(`answer ${response.status}`);
-        return response.arrayBuffer();
-      })
+    bytesOf(blob)
       .then((buffer) => {
         solids.setBlob(i, trianglesIn(buffer));
         solids.set(obstacles());
@@ -319,6 +323,10 @@ Object.defineProperty(window, "lapwing", {
     get surface() { return scanned.triangles; },
     get views() { return session.world.scan?.views ?? []; },
     get grown() { return explored.count; },
+    get rays() { return sights.rays; },
+    get episode() { return studio.episode; },
+    get live() { return studio.live?.told.images.length ?? 0; },
+    get paused() { return studio.paused; },
     get game() { return game.figures; },
     get farthest() { return stage.worldCamera.far; },
     measure(on: boolean) { stage.measuring = on; },
@@ -330,4 +338,13 @@ Object.defineProperty(window, "lapwing", {
   }),
 });
 
+if (inReport) {
+  studio.rendered = false;      // nobody renders
+  // Once what is drawn has come.
+  session.on(({ what }) => {
+    if (what !== "welcome") return;
+    studio.seek(studio.duration);    // all that was found
+    stage.once(() => tellDrawn());
+  });
+}
 session.start();

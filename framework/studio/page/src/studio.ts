@@ -10,13 +10,15 @@ import { passagesOf } from "./state/failures";
 import type { Edit, Item } from "./state/edits";
 import { entryOf, sameItem } from "./state/edits";
 import type { Session } from "./state/session";
-import type { FleetTour, Flown, JsonObject, Passage, Plan } from "./state/types";
+import { LiveEpisode, type Sight } from "./state/exploration";
+import type { ExplorationWorld, FleetTour, Flown, JsonObject, Passage, Plan, RunMessage,
+              TakenImage } from "./state/types";
 import type { Version } from "./state/compare";
 import { standingOf, type Grade, type Standing } from "./state/grades";
 import { clamp } from "./state/vector";
 
 export type Topic = "document" | "standing" | "selection" | "time" | "mode" | "link" | "world" |
-  "flown" | "look" | "playing" | "kept";
+  "flown" | "look" | "playing" | "kept" | "episode" | "sight";
 export type Mode = "orbit" | "place" | "aim" | "draw" | "camera" | "walk" | "outline" | "stroke" | "race";
 export type Rate = 0.5 | 1 | 2;
 
@@ -31,16 +33,23 @@ export class Studio {
   rendered = true;             // a picture by the server while paused
   framing = false;             // clicks in the picture place the subject
   margins = false;             // hulls around obstacles
+  speeds = false;              // paths in the colours of their speed
   map = false;                 // the world from straight above
   outlined: PolygonKind = "region";    // what a drag draws in the mode `outline`
   // Of a scan: what is drawn, and the figure whose colours the surface has.
-  readonly look: { figure: Figure; views: boolean; candidates: boolean; first: boolean } =
-    { figure: "accuracy_mm", views: true, candidates: false, first: false };
+  readonly look: { figure: Figure; views: boolean; candidates: boolean; first: boolean;
+                  rays: boolean } =
+    { figure: "accuracy_mm", views: true, candidates: false, first: false, rays: false };
+  run: RunMessage | null = null;       // the folder of a run that is shown in place of the document
+  live: LiveEpisode | null = null;     // an exploration that is being planned
+  paused = false;                      // likewise
+  sight: Sight | null = null;          // what the last image by the play head was chosen by
   flown: Flown | null = null;
   kept: (Version & { grade: Grade }) | null = null;   // to be compared with
   private readonly listeners: { topics: Topic[]; then: (topic: Topic) => void }[] = [];
   private cached: { document: JsonObject; film: Film; guess: Plan } | null = null;
   private lastFrame = 0;
+  private shownRun: Standing | null = null;
   private fleet: { tours: FleetTour[]; tour: number; shown: Standing } | null = null;
 
   constructor(readonly session: Session) {
@@ -57,7 +66,16 @@ export class Studio {
           this.tell("document");
           this.tell("standing");
           break;
-        case "standing": this.tell("standing"); break;
+        case "standing":
+          if (!["guess", "step"].includes(session.standing().grade)) this.endLive();
+          this.tell("standing");
+          break;
+        case "image": this.take(event.message as TakenImage); break;
+        case "pace":
+          this.paused = (event.message as { paused: boolean }).paused;
+          this.tell("episode");
+          break;
+        case "run": this.showRun(event.message as RunMessage); break;
         case "link": this.tell("link"); break;
         case "world": this.tell("world"); break;
         case "flown":
@@ -77,7 +95,44 @@ export class Studio {
     for (const { topics, then } of this.listeners) if (topics.includes(topic)) then(topic);
   }
 
+  // The episode that is shown: of a run's folder, of the planning under way, of the document.
+  get episode(): ExplorationWorld | undefined {
+    return this.run?.exploration ?? this.live?.told ?? this.session.world.exploration;
+  }
+
+  // Null: the document again.
+  showRun(run: RunMessage | null): void {
+    if (run === this.run) return;
+    this.run = run;
+    document.body.classList.toggle("run-shown", run !== null);
+    this.shownRun = null;
+    this.play(false);
+    this.time = run ? run.plan.duration : clamp(this.time, 0, this.duration);
+    for (const topic of ["standing", "episode", "time"] as const) this.tell(topic);
+  }
+
+  private take(taken: TakenImage): void {
+    const { session } = this;
+    if (taken.revision !== session.revision || session.pending > 0) return;
+    if (taken.image === 1) this.live = new LiveEpisode(taken.revision);
+    const follows = this.time >= this.duration - 1e-6;
+    if (!this.live?.take(taken)) return;
+    if (follows && !this.run) this.time = taken.time;
+    for (const topic of ["standing", "episode", "time"] as const) this.tell(topic);
+  }
+
+  private endLive(): void {
+    if (!this.live) return;
+    this.live = null;
+    this.paused = false;
+    this.tell("episode");
+  }
+
   private refresh(): void {
+    // An edit is of the document.
+    const { run, session } = this;
+    if (run && (session.pending > 0 || session.dragging)) this.showRun(null);
+    if (this.live && (session.pending > 0 || this.live.revision !== session.revision)) this.endLive();
     const document = this.session.document();
     const guess = isCourse(document) ? courseGuess(document) : guessOf(document);
     this.cached = { document, film: filmOf(document), guess };
@@ -114,6 +169,8 @@ export class Studio {
   // Of the tour that is shown, where there are several.
   get standing(): Standing {
     const standing = this.session.standing();
+    if (this.run) return this.standingOfRun(this.run);
+    if (this.live && !standing.plan) return { ...standing, grade: "step", plan: this.live.plan };
     const { tours } = standing;
     if (tours.length === 0) return standing;
     const tour = Math.min(this.tour, tours.length - 1);
@@ -122,6 +179,14 @@ export class Studio {
     }
     const { plan, certificate } = this.fleet.shown;
     return { ...standing, plan, certificate };
+  }
+
+  // As the run judged it.
+  private standingOfRun({ plan, certificate, folder }: RunMessage): Standing {
+    return this.shownRun ??= {
+      grade: certificate ? certificate.passed ? "certified" : "rejected" : "converged",
+      plan, certificate, message: `The run in ${folder}, as it was judged then.`, ms: null, tours: [],
+    };
   }
 
   // Whose plan the server is asked about.

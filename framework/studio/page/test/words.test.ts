@@ -5,7 +5,7 @@ import { legAt, mendOf, passagesOf, plainName, slowerBy, sortedChecks, unhurried
   "../src/state/failures";
 import { choicesIn, optionsIn } from "../src/state/installed";
 import { actionOf, bindings, keyOf, keyText } from "../src/state/keys";
-import { lanesOf, massOf } from "../src/state/samples";
+import { lanesOf, massOf, rangeOf, speedsOf } from "../src/state/samples";
 import { fieldsOf, parseField, pluginFields, rangeText, sliderOf, weightOf } from "../src/state/schema";
 import type { Check, Option, Plan } from "../src/state/types";
 import { clock, parseQuantity, show } from "../src/state/units";
@@ -184,4 +184,11 @@ test("a leg beyond the drone is slowed to a pace that it keeps", () => {
   assert.equal(unhurried(at(0, 0), at(10, 120), undefined), 1);
   assert.match(mendOf({ name: "keyframe_miss", worst: 4, limit: 0.5, detail: "keyframe 3" } as never),
                /beside keyframe 3 more/);
+});
+
+test("speeds are those of the plan, in all directions", () => {
+  const speeds = speedsOf({ time: [0, 1], vx: [3, 0], vy: [4, 0], vz: [12, -2] });
+  assert.deepEqual(speeds, [13, 2]);
+  assert.deepEqual(rangeOf(speeds as number[]), [2, 13]);
+  assert.equal(speedsOf({ time: [0, 1], vx: [3, 0], vy: [4, 0] }), null);
 });

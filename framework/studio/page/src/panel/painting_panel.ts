@@ -1,23 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 // A light painting as a list of strokes that were drawn by hand, and the text in their place.
-import { addedStroke, drawnStrokes, earlierStroke, inWorld, isPainting, planeOf, reversedStroke,
-         withoutStroke } from "../state/painting";
+import { addedStroke, drawingErrorInWords, drawnStrokes, earlierStroke, inWorld, isPainting, lightsAndGaps,
+         planeOf, reversedStroke, withoutStroke } from "../state/painting";
+import { fieldsOf } from "../state/schema";
 import { show } from "../state/units";
 import type { Edit } from "../state/edits";
 import type { Studio } from "../studio";
 import { byId, el, refill } from "../view/dom";
+import { Form } from "./form";
 
+const ASKED = ["reorder", "gap", "facing"];
 const STROKE = 1;   // m, of a stroke that is added by keyboard
 
 export class PaintingPanel {
   private shown = "";
+  private readonly options = new Form(({ path, label }, value) => {
+    this.studio.edit({ label: `Change ${label.toLowerCase()}`,
+                       patch: [value === null ? { path, remove: true } : { path, value }] });
+  });
 
   constructor(private readonly studio: Studio) {
     byId("draw-stroke").addEventListener("click", () => this.draw());
     byId("add-stroke").addEventListener("click", () => this.add());
     const text = byId<HTMLInputElement>("painting-text");
     text.addEventListener("change", () => this.write(text.value));
+    byId("painting-options").append(this.options.root);
     studio.on(["document", "mode"], () => this.show());
+    studio.on(["document", "standing"], () => this.showFlight());
   }
 
   // From now on drags on the plane of the drawing are strokes.
@@ -49,6 +58,27 @@ export class PaintingPanel {
       }
     }
     studio.edit({ label: "Change the text", patch });
+  }
+
+  // Order and gaps as planned, and how far the light is from what was asked for.
+  private showFlight(): void {
+    const { studio } = this;
+    if (!isPainting(studio.document)) return;
+    this.options.show(fieldsOf(studio.session.schema, studio.document)
+      .filter(({ path }) => ASKED.includes(path))
+      .sort((a, b) => ASKED.indexOf(a.path) - ASKED.indexOf(b.path)));
+    const { plan, certificate } = studio.standing;
+    byId("drawing-error").textContent = drawingErrorInWords(certificate);
+    refill(byId("light-list"), ...lightsAndGaps(plan).map(({ start, finish, lit }, k) =>
+      el("li", {}, el("button", {
+        type: "button", class: "item", "data-key": `light-${k}`, title: "To its beginning",
+        onclick: () => {
+          studio.play(false);
+          studio.seek(start);
+        },
+      }, el("span", { class: "badge" }, lit ? "\u25cf" : "\u25cb"),
+      el("span", { class: "what" }, lit ? "light" : "dark"),
+      el("span", { class: "when" }, `${show(Math.round(100 * (finish - start)) / 100)} s`)))));
   }
 
   private show(): void {

@@ -9,6 +9,20 @@ import { byId, el, refill } from "../view/dom";
 import { RaceView } from "../view/race_view";
 import { dialog, writtenList } from "./dialogs";
 
+// What is asked of who flies by hand.
+function playerFields(k: number, title: string): HTMLElement {
+  const number = (id: string, range: Record<string, number>, value: string): HTMLElement =>
+    el("input", { id: `racer-${id}-${k}`, type: "number", ...range, value });
+  return el("fieldset", {}, el("legend", {}, title),
+    el("label", {}, "Name ", el("input", { id: `racer-name-${k}`, type: "text", maxLength: 40,
+                                            placeholder: `Player ${k}` })),
+    el("label", {}, "Flies with ", el("select", { id: `racer-device-${k}` },
+      ...devices.map(({ device, text }) => el("option", { value: device }, text)))),
+    el("label", { title: "0: the plan flies; 1: the stick alone" }, "Weight of the stick ",
+       number("weight", { min: 0, max: 1, step: 0.05 }, "0.5")),
+    el("label", {}, "Handicap, s ", number("handicap", { min: -3600, max: 3600, step: 0.5 }, "0")));
+}
+
 export class RaceGamePanel {
   private readonly box = dialog("race-dialog");
   private readonly hud = byId("race-hud");
@@ -25,10 +39,8 @@ export class RaceGamePanel {
   private readonly seen: number[] = [];
 
   constructor(private readonly studio: Studio, private readonly view: RaceView) {
-    for (const k of [1, 2]) {
-      byId(`racer-device-${k}`).append(
-        ...devices.map(({ device, text }) => el("option", { value: device }, text)));
-    }
+    byId("racer-two-label").before(playerFields(1, "First player"));
+    byId("racer-two-label").after(playerFields(2, "Second player"));
     byId<HTMLSelectElement>("racer-device-2").value = "letters";
     byId("race-go").addEventListener("click", () => this.start());
     byId("race-widen").addEventListener("click", () => studio.edit(roomier(studio.document)));

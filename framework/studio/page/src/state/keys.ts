@@ -47,6 +47,7 @@ export const bindings: Binding[] = [
   { group: "View", keys: ["K"], action: "keyframe-here", text: "Keyframe of what you see" },
   { group: "View", keys: ["Z"], action: "frame", text: "Show everything" },
   { group: "View", keys: ["E"], action: "map", text: "The world from straight above, as a map; back" },
+  { group: "View", keys: ["S"], action: "speeds", text: "The path in the colours of its speed on, off" },
   { group: "View", keys: ["G"], action: "guides", text: "Guides in the picture on, off" },
   { group: "View", keys: ["M"], action: "framing",
     text: "Place the subject in the picture by clicking there" },

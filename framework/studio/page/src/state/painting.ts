@@ -4,7 +4,8 @@
 // those that are drawn here keep their size, so `height` and `base` follow them.
 import { isObject } from "./document";
 import type { Edit } from "./edits";
-import type { Json, JsonObject, Plan, Vec3 } from "./types";
+import type { Certificate, Json, JsonObject, Plan, Vec3 } from "./types";
+import { show } from "./units";
 import { add, rounded, vec } from "./vector";
 
 export type Point = [number, number];   // m, to the right and up, of who looks at the drawing
@@ -173,4 +174,26 @@ export function litRuns(plan: Plan, until: number): Vec3[][] {
     });
     return run.length > 1 ? [run] : [];
   });
+}
+
+// The spans of a plan with light and those between them, in the order of flight.
+export function lightsAndGaps(plan: Plan | null): { start: number; finish: number; lit: boolean }[] {
+  const lights = plan?.lights ?? [];
+  return lights.flatMap((light, k) => {
+    const next = lights[k + 1];
+    return [{ ...light, lit: true },
+            ...(next ? [{ start: light.finish, finish: next.start, lit: false }] : [])];
+  });
+}
+
+// As the verifier found it: of the plan, and of its simulated flight.
+export function drawingErrorInWords(certificate: Certificate | null): string {
+  const check = (name: string): number | null =>
+    certificate?.checks.find((one) => one.name === name)?.worst ?? null;
+  const planned = check("drawing"), flown = check("drawing_flown");
+  const limit = certificate?.checks.find((one) => one.name === "drawing")?.limit ?? null;
+  if (planned === null) return "";
+  const mm = (metres: number): string => `${show(1000 * metres)} mm`;
+  return `The light is ${mm(planned)} from the strokes on average as planned${
+    flown === null ? "" : `, ${mm(flown)} as flown`}${limit === null ? "" : `; at most ${mm(limit)}`}.`;
 }

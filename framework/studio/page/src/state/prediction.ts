@@ -21,7 +21,48 @@ const order: Figure[] = ["images", "incidence_deg", "mm_per_pixel", "parallax_de
 const FACE = 1 + 3 * 4 + 3 + 5 * 4;   // bytes
 const MOST_HEAD = 2000;
 
+const COARSE_HEAD = 36, COARSE_CORNER = 6, COARSE_FACE = 24;   // bytes
+
+// The coarse stand-in of a report.
+function coarseIn(buffer: ArrayBuffer): Prediction {
+  const data = new DataView(buffer);
+  const whole = buffer.byteLength >= COARSE_HEAD;
+  const vertices = whole ? data.getUint32(4, true) : 0, faces = whole ? data.getUint32(8, true) : 0;
+  if (!whole || COARSE_HEAD + COARSE_CORNER * vertices + COARSE_FACE * faces !== buffer.byteLength) {
+    throw new Error("prediction: no coarse surface in it");
+  }
+  const positions = new Float32Array(3 * vertices);
+  for (let i = 0; i < positions.length; ++i) {
+    const lower = data.getFloat32(12 + 4 * (i % 3), true), size = data.getFloat32(24 + 4 * (i % 3), true);
+    positions[i] = lower + (size * data.getUint16(COARSE_HEAD + 2 * i, true)) / 65535;
+  }
+  const triangles = new Uint32Array(3 * faces), colors = new Uint8Array(3 * faces);
+  const figures = emptyFigures(faces);
+  const scratch = new DataView(new ArrayBuffer(4));
+  for (let t = 0, at = COARSE_HEAD + COARSE_CORNER * vertices; t < faces; ++t, at += COARSE_FACE) {
+    for (let c = 0; c < 3; ++c) {
+      const corner = data.getUint16(at + 2 * c, true);
+      if (corner >= vertices) throw new Error(`prediction: vertex ${corner} of ${vertices}`);
+      triangles[3 * t + c] = corner;
+      colors[3 * t + c] = data.getUint8(at + 8 + c);
+    }
+    figures.images[t] = data.getInt16(at + 6, true);
+    for (let k = 1; k < order.length; ++k) {
+      // The lowest byte of the number is left out.
+      for (let b = 0; b < 3; ++b) scratch.setUint8(1 + b, data.getUint8(at + 9 + 3 * k + b));
+      figures[order[k] as Figure][t] = scratch.getFloat32(0, true);
+    }
+  }
+  return { positions, triangles, colors, figures };
+}
+
+const emptyFigures = (faces: number): Prediction["figures"] => Object.fromEntries(
+  order.map((name) => [name, new Float32Array(faces)])) as Prediction["figures"];
+
 export function predictionIn(buffer: ArrayBuffer): Prediction {
+  if (String.fromCharCode(...new Uint8Array(buffer, 0, Math.min(4, buffer.byteLength))) === "WLP1") {
+    return coarseIn(buffer);
+  }
   const start = String.fromCharCode(...new Uint8Array(buffer, 0, Math.min(MOST_HEAD, buffer.byteLength)));
   const end = start.indexOf("end_header\n");
   const count = (what: string): number => Number(/^\d+/.exec(
@@ -36,8 +77,7 @@ export function predictionIn(buffer: ArrayBuffer): Prediction {
   const positions = new Float32Array(3 * vertices);
   for (let i = 0; i < positions.length; ++i) positions[i] = data.getFloat32(head + 4 * i, true);
   const triangles = new Uint32Array(3 * faces), colors = new Uint8Array(3 * faces);
-  const figures = Object.fromEntries(order.map((name) => [name, new Float32Array(faces)])) as
-    Prediction["figures"];
+  const figures = emptyFigures(faces);
   for (let t = 0, at = head + 12 * vertices; t < faces; ++t, at += FACE) {
     for (let c = 0; c < 3; ++c) {
       const corner = data.getUint32(at + 1 + 4 * c, true);

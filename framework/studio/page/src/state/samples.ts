@@ -45,6 +45,18 @@ export function pathOf(columns: Columns): Vec3[] {
     [columns.x?.[i] ?? 0, columns.y?.[i] ?? 0, columns.z?.[i] ?? 0]);
 }
 
+// m/s, at each sample; null where there is no velocity.
+export function speedsOf({ time, vx, vy, vz }: Columns): number[] | null {
+  if (!vx || !vy || !vz || vx.length !== time.length) return null;
+  return vx.map((v, i) => Math.hypot(v, vy[i] as number, vz[i] as number));
+}
+
+// The least and the largest of them.
+export function rangeOf(values: number[]): [number, number] {
+  return [values.reduce((a, b) => Math.min(a, b), Infinity),
+          values.reduce((a, b) => Math.max(a, b), -Infinity)];
+}
+
 // The time at which the path is closest to a point; ties go to the first.
 export function nearestTime(columns: Columns, point: Vec3): number {
   let best = 0, least = Infinity;

@@ -306,7 +306,11 @@ export class Session {
       case "estimate":
         if (message.tab !== this.parts.tab || message.edit !== this.drag?.edit) return;
         return this.tell({ what: "estimate", message });
-      case "raced": return this.tell({ what: "raced", message });
+      case "raced":
+      case "image":
+      case "pace":
+      case "run":
+      case "runs": return this.tell({ what: message.type, message });
       case "worker": return this.tell({ what: "worker", message });
       case "remark": return this.tell({ what: "note", text: message.message });
       case "script_changed":

@@ -181,10 +181,41 @@ export interface ExplorationWorld {
   efficiency: number;
   resolution: number;          // m
   images: { time: number; position: Vec3; yaw: number; pitch: number; value: number;
-            scored: number; observed: number }[];
+            scored: number; observed: number | null }[];   // null while it is not known yet
   oracle: number[];            // observed by its images; empty where not compared
   candidates: { position: Vec3; direction: Vec3; value: number }[];   // at the end
-  growth?: string;             // blob, as exploration.ts reads it
+  growth?: string;             // blobs, as exploration.ts reads them
+  sights?: string;
+}
+
+// An image of an exploration that is being planned.
+export interface TakenImage {
+  type: "image";
+  revision: number;
+  utility: string;
+  image: number;               // from 1 on
+  asked: number;               // of so many
+  surface: number;
+  resolution: number;          // m
+  time: number;
+  position: Vec3;
+  yaw: number;
+  pitch: number;
+  value: number;
+  scored: number;
+  observed: number | null;     // null: known at the end
+  grown: number[];             // x, y, z, ... of voxels that are occupied for the first time, m
+  sights: string;              // blob, of this image alone
+}
+
+// The episode of a run's folder.
+export interface RunMessage {
+  type: "run";
+  id: string;
+  folder: string;
+  plan: Plan;
+  certificate: Certificate | null;
+  exploration: ExplorationWorld;
 }
 
 export interface World {
@@ -285,6 +316,10 @@ export type ServerMessage =
   | Flown
   | Raced
   | Estimate
+  | TakenImage
+  | RunMessage
+  | { type: "runs"; id: string; folders: string[] }
+  | { type: "pace"; paused: boolean }
   | ({ type: "world" } & World)
   | { type: "refused"; id?: string; edit?: number; why: string }
   | { type: "failed"; id?: string; edit?: number; why: string }

@@ -2,11 +2,13 @@
 // An exploration at the play head: the voxels that its map had by then, the view of the last image,
 // and at the end the views that were left, by their value.
 import * as THREE from "three";
-import { growthIn, grownBy, imagesBy, type Growth } from "../state/exploration";
+import { growthIn, grownBy, imagesBy, type Growth, type LiveEpisode } from "../state/exploration";
 import type { ExplorationWorld } from "../state/types";
 import type { Studio } from "../studio";
+import { blob } from "./blobs";
 import type { Stage } from "./stage";
 
+const LIVE = "live";       // no blob
 const TICK = 1.2;          // m, of the line that shows where a candidate looks
 const LEAST_VALUE = 0.15;  // brightness of a candidate without value
 const BRIGHT = [232, 60, 120];  // of the best one
@@ -34,7 +36,7 @@ export class ExplorationView {
     this.voxels.visible = this.candidates.visible = false;
     stage.scene.add(this.voxels);
     stage.tools.add(this.candidates);
-    studio.on(["world", "look"], () => this.draw());
+    studio.on(["world", "episode", "look"], () => this.draw());
     studio.on(["time"], () => this.grow());
   }
 
@@ -48,12 +50,14 @@ export class ExplorationView {
   }
 
   private get told(): ExplorationWorld | undefined {
-    return this.studio.session.world.exploration;
+    return this.studio.episode;
   }
 
   private draw(): void {
     const { told } = this;
-    this.fetch(told?.growth ?? "");
+    const { live, run } = this.studio;
+    if (live && !run) this.showLive(live);
+    else this.fetch(told?.growth ?? "");
     if (this.drawn !== told) {
       this.drawn = told;
       this.drawCandidates(told);
@@ -80,16 +84,18 @@ export class ExplorationView {
     this.candidates.geometry.setAttribute("color", new THREE.BufferAttribute(colors, 3, true));
   }
 
+  private showLive(live: LiveEpisode): void {
+    this.fetched = LIVE;
+    if (this.growth !== live.growth) this.take(live.growth);
+  }
+
   private fetch(name: string): void {
     if (name === this.fetched) return;
     this.fetched = name;
     this.voxels.visible = false;
     this.growth = null;
     if (!name) return;
-    fetch(`/blob/${name}`).then((response) => {
-      if (!response.ok) throw new Error(`answer ${response.status}`);
-      return response.arrayBuffer();
-    }).then((buffer) => {
+    blob(name).then((buffer) => {
       if (this.fetched === name) this.take(growthIn(buffer));
     }).catch((error: Error) => {
       if (this.fetched !== name) return;
@@ -121,7 +127,7 @@ export class ExplorationView {
     this.voxels.material.size = 1.3 * growth.edge;
     this.voxels.visible = true;
     this.grow();
-    this.studio.tell("standing");
+    if (this.fetched !== LIVE) this.studio.tell("standing");
   }
 
   private grow(): void {

@@ -2,10 +2,13 @@
 // The curves of the world: the path in the look of its grade, the last answer beneath a guess,
 // failing passages, the flown ghost; and the drone with its camera at the play head.
 import * as THREE from "three";
-import { pathOf, positionAt, viewAt } from "../state/samples";
+import { colourOf } from "../state/prediction";
+import { pathOf, positionAt, rangeOf, speedsOf, viewAt } from "../state/samples";
+import { show } from "../state/units";
 import type { Grade } from "../state/grades";
 import type { Columns, Vec3 } from "../state/types";
 import type { Studio } from "../studio";
+import { byId } from "./dom";
 import { Ribbon } from "./ribbon";
 import { segments } from "./ground";
 import type { Stage } from "./stage";
@@ -14,6 +17,8 @@ const shapes: Record<Exclude<Grade, "refused">, Ribbon> = {
   guess: new Ribbon("dashed", 5), step: new Ribbon("thin", 4), converged: new Ribbon("rails", 4),
   certified: new Ribbon("solid", 4), rejected: new Ribbon("rails", 4),
 };
+
+const ROUNDING = 1e-9;   // of the highest speed: a vehicle at rest has as much
 
 const placesIn = (way: number[]): Vec3[] =>
   Array.from({ length: Math.floor(way.length / 3) }, (_, k) =>
@@ -75,8 +80,9 @@ export class Paths {
     const { grade, plan } = this.studio.standing;
     for (const ribbon of Object.values(shapes)) ribbon.hide();
     if (plan && grade !== "refused" && grade !== "guess") {
-      shapes[grade].set(pathOf(plan.columns), 1);
+      shapes[grade].set(pathOf(plan.columns), 1, this.shades(plan.columns));
     } else {
+      byId("speed-legend").hidden = true;   // a sketch has no speeds to rely on
       const old = this.studio.session.grades.lastPlan();
       if (old && this.studio.session.dragging) shapes.step.set(pathOf(old.columns), 1);
       const guess = pathOf(this.studio.guess.columns);
@@ -86,6 +92,17 @@ export class Paths {
       partOf(plan.columns, passage.start, passage.finish)) : [], 0.8);
     this.drawStems();
     this.drawMarker();
+  }
+
+  // Of each sample, by its speed; the pattern still tells the grade. Shows what the colours mean.
+  private shades(columns: Columns): number[][] | undefined {
+    const speeds = this.studio.speeds ? speedsOf(columns) : null;
+    byId("speed-legend").hidden = !speeds;
+    if (!speeds) return undefined;
+    const [least, most] = rangeOf(speeds);
+    const rests = least < ROUNDING * most;
+    byId("speed-scale").textContent = `${show(rests ? 0 : least, 3)} to ${show(most, 3)} m/s`;
+    return speeds.map((speed) => colourOf(most > least ? (speed - least) / (most - least) : 0));
   }
 
   private drawGhost(): void {

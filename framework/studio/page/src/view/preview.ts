@@ -8,6 +8,7 @@ import { viewAt } from "../state/samples";
 import type { CameraOptics } from "../state/types";
 import type { Studio } from "../studio";
 import { byId, el, sized } from "./dom";
+import { inReport } from "./report";
 import type { Stage } from "./stage";
 
 const STILL = 350;      // ms without a change, before a picture is asked for
@@ -52,7 +53,7 @@ export class Preview {
     const { studio } = this;
     if (studio.playing || !studio.rendered || !studio.session.welcomed) return;
     // What was explored is drawn here, as far as it had grown.
-    if (studio.session.world.exploration) return;
+    if (studio.episode) return;
     // The server draws what has converged.
     const { grade } = studio.standing;
     if (studio.session.dragging || grade === "guess" || grade === "step" || grade === "refused") {
@@ -191,6 +192,6 @@ export function previewControls(studio: Studio): HTMLElement {
   return el("div", { class: "row" }, framing,
     box("Guides", "Thirds, horizon and the subject's box (G)", () => studio.guides,
         (on) => { studio.guides = on; }),
-    box("Rendered", "On pause ask the server for a real picture when the film stands still",
+    !inReport && box("Rendered", "On pause ask the server for a real picture when the film stands still",
         () => studio.rendered, (on) => { studio.rendered = on; }));
 }

@@ -17,10 +17,12 @@ attribute vec3 before;
 attribute vec3 after;
 attribute float side;
 attribute float along;
+attribute vec3 shade;
 uniform vec2 resolution;
 uniform float width;
 varying float vAlong;
 varying float vSide;
+varying vec3 vShade;
 vec4 toClip(vec3 p) { return projectionMatrix * modelViewMatrix * vec4(p, 1.0); }
 vec2 toScreen(vec4 clip) { return clip.xy / max(clip.w, 0.01) * resolution; }
 void main() {
@@ -32,6 +34,7 @@ void main() {
   here.z -= 2e-4 * here.w;
   vAlong = along;
   vSide = side;
+  vShade = shade;
   gl_Position = here;
 }`;
 
@@ -42,7 +45,10 @@ uniform float dash;
 uniform float alpha;
 varying float vAlong;
 varying float vSide;
+varying vec3 vShade;
+uniform bool shaded;
 void main() {
+  vec3 base = shaded ? vShade : tint;
   float u = vAlong / dash;
   if (pattern == 0 && fract(u) > 0.55) discard;
   if (pattern == 2 && abs(vSide) < 0.4) discard;
@@ -50,7 +56,7 @@ void main() {
   float w = fract(u);
   if (pattern == 6 && w > 0.55 && (w < 0.7 || w > 0.85)) discard;
   if (pattern == 5 && fract(u * 2.0) > 0.4) discard;
-  gl_FragColor = vec4(pale ? mix(tint, vec3(1.0), 0.75) : tint, alpha);
+  gl_FragColor = vec4(pale ? mix(base, vec3(1.0), 0.75) : base, alpha);
 }`;
 
 export class Ribbon {
@@ -62,7 +68,7 @@ export class Ribbon {
       uniforms: {
         resolution: { value: new THREE.Vector2(1, 1) }, width: { value: widths[pattern] },
         tint: { value: new THREE.Color() }, pattern: { value: patterns.indexOf(pattern) },
-        dash: { value: 1 }, alpha: { value: 1 },
+        dash: { value: 1 }, alpha: { value: 1 }, shaded: { value: false },
       },
     });
     this.mesh = new THREE.Mesh(new THREE.BufferGeometry(), material);
@@ -71,18 +77,21 @@ export class Ribbon {
     this.mesh.visible = false;
   }
 
-  // `dash`: metres from one dash to the next.
-  set(points: Vec3[], dash: number): void {
-    this.setRuns(points.length > 1 ? [points] : [], dash);
+  // `dash`: metres from one dash to the next. `shades`: red, green and blue of each point, to 255, in
+  // place of the one colour.
+  set(points: Vec3[], dash: number, shades?: number[][]): void {
+    this.setRuns(points.length > 1 ? [points] : [], dash, shades);
   }
 
-  setRuns(runs: Vec3[][], dash: number): void {
+  // `shades`: of the points of all runs.
+  setRuns(runs: Vec3[][], dash: number, shades?: number[][]): void {
     const count = runs.reduce((sum, run) => sum + run.length, 0);
     this.mesh.visible = count > 1;
     if (count < 2) return;
     const place = new Float32Array(count * 6), before = new Float32Array(count * 6);
     const after = new Float32Array(count * 6), side = new Float32Array(count * 2);
     const along = new Float32Array(count * 2);
+    const shade = new Uint8Array(shades ? count * 6 : 0);
     const index: number[] = [];
     let k = 0;
     for (const run of runs) {
@@ -97,6 +106,7 @@ export class Ribbon {
           after.set(b, 3 * at);
           side[at] = s * 2 - 1;
           along[at] = way;
+          if (shades) shade.set(shades[k] ?? [0, 0, 0], 3 * at);
         }
         if (i > 0) index.push(2 * k - 2, 2 * k - 1, 2 * k, 2 * k, 2 * k - 1, 2 * k + 1);
         ++k;
@@ -108,6 +118,8 @@ export class Ribbon {
     geometry.setAttribute("after", new THREE.BufferAttribute(after, 3));
     geometry.setAttribute("side", new THREE.BufferAttribute(side, 1));
     geometry.setAttribute("along", new THREE.BufferAttribute(along, 1));
+    if (shades) geometry.setAttribute("shade", new THREE.BufferAttribute(shade, 3, true));
+    this.uniform("shaded").value = shades !== undefined;
     geometry.setIndex(index);
     this.mesh.geometry.dispose();
     this.mesh.geometry = geometry;

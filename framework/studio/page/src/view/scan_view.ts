@@ -11,6 +11,7 @@ import type { Studio } from "../studio";
 import { Lighter } from "./lighter";
 import { Ribbon } from "./ribbon";
 import { WORLD } from "./solids";
+import { blob } from "./blobs";
 import type { Stage } from "./stage";
 
 const DEEP = 0.04;         // of the region's extent, of a view's frustum
@@ -149,10 +150,7 @@ export class ScanView {
       this.onSurface();
       return;
     }
-    fetch(`/blob/${name}`).then((response) => {
-      if (!response.ok) throw new Error(`answer ${response.status}`);
-      return response.arrayBuffer();
-    }).then((buffer) => {
+    blob(name).then((buffer) => {
       if (this.fetched === name) this.take(predictionIn(buffer));
     }).catch((error: Error) => {
       if (this.fetched !== name) return;
