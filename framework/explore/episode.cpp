@@ -22,6 +22,7 @@ namespace {
 
 constexpr double kMostCleared = 1 << 24;  // voxels
 constexpr int kRescored = 4;              // views that are re-scored together; a part of the result
+constexpr double kLeastSeconds = 1e-3;    // of an image without a way and without a pause
 constexpr std::size_t kListed = 64;       // candidates valued between two looks at the clock
 
 double wall_seconds() {
@@ -72,16 +73,17 @@ VoxelBox clear_box(Map& map, const Eigen::AlignedBox3d& box) {
   return {low, high};
 }
 
-// The viewpoints that could be gone to, by value; values of older maps are upper bounds.
+// The viewpoints that could be gone to, by rank; values of older maps are upper bounds.
 class Candidates {
  public:
   struct Entry {
     double value;
     int place;
-    int scored;  // at which step
-    // The highest value on top, of equal ones the one that was known first.
+    int scored;   // at which step
+    double rank;  // the value, or the value for each second
+    // The highest rank on top, of equal ones the one that was known first.
     bool operator<(const Entry& other) const {
-      return value != other.value ? value < other.value : place > other.place;
+      return rank != other.rank ? rank < other.rank : place > other.place;
     }
   };
   void push(const Entry& entry) { queue_.push(entry); }
@@ -91,6 +93,16 @@ class Candidates {
     const Entry entry = queue_.top();
     queue_.pop();
     return entry;
+  }
+  // Ranks all anew.
+  template <class Rank>
+  void rank_anew(Rank rank) {
+    std::vector<Entry> entries;
+    while (!empty()) {
+      entries.push_back(pop());
+      entries.back().rank = rank(entries.back().value, entries.back().place);
+    }
+    queue_ = std::priority_queue<Entry>(std::less<Entry>(), std::move(entries));
   }
 
  private:
@@ -132,6 +144,7 @@ class Explorer {
   void look(EpisodeStep& taken, int place);
   void add_neighbours(int place, std::vector<Viewpoint>& reachable);
   void score(std::span<const int> places);
+  double rank_of(double value, int place) const;
   // As the explorer chooses by them; how many views the utility was asked for.
   int value_of(std::span<const Viewpoint> views, std::span<double> values) const;
   // All candidates whose values are of older maps; false where there are none.
@@ -165,7 +178,8 @@ class Explorer {
   ViewpointGraph graph_;
   EpisodeView known_;
   Candidates candidates_;
-  std::vector<int> visits_;  // by place
+  std::vector<int> visits_;    // by place
+  std::vector<double> reach_;  // s, by place: the quickest ways from here, if seconds count
   int at_ = 0;
   int step_ = 0;
   int scored_ = 0;
@@ -204,7 +218,16 @@ void Explorer::score(std::span<const int> places) {
   for (const int place : places) views.push_back(graph_[place]);
   std::vector<double> values(views.size());
   scored_ += value_of(views, values);
-  for (std::size_t k = 0; k < places.size(); ++k) candidates_.push({values[k], places[k], step_});
+  for (std::size_t k = 0; k < places.size(); ++k)
+    candidates_.push({values[k], places[k], step_, rank_of(values[k], places[k])});
+}
+
+double Explorer::rank_of(double value, int place) const {
+  if (!settings_.per_second) return value;
+  // Of a view that nobody has asked for the way to: until then it is a neighbour.
+  const auto at = static_cast<std::size_t>(place);
+  const double reach = at < reach_.size() ? reach_[at] : 0;
+  return value / std::max(reach + settings_.pause, kLeastSeconds);
 }
 
 int Explorer::value_of(std::span<const Viewpoint> views, std::span<double> values) const {
@@ -243,6 +266,10 @@ bool Explorer::rescore_all() {
 }
 
 bool Explorer::choose(EpisodeStep& taken, int& place) {
+  if (settings_.per_second) {
+    reach_ = graph_.seconds_from(at_);
+    candidates_.rank_anew([&](double value, int at) { return rank_of(value, at); });
+  }
   std::vector<Candidates::Entry> unreachable;
   const auto keep = [&] {
     for (const Candidates::Entry& entry : unreachable) candidates_.push(entry);
@@ -275,16 +302,26 @@ bool Explorer::choose(EpisodeStep& taken, int& place) {
       unreachable.push_back(best);
       continue;
     }
-    taken.value = best.value;
     const MoveTimes times{settings_.speed, settings_.turn_rate};
+    double seconds = 0, length = 0;
     int from = at_;
     for (const int next : way) {
-      taken.length += (graph_[next].position - graph_[from].position).norm();
-      taken.time += times.of(graph_[from], graph_[next]);
-      taken.way.push_back(graph_[next]);
+      length += (graph_[next].position - graph_[from].position).norm();
+      seconds += times.of(graph_[from], graph_[next]);
       from = next;
     }
-    taken.time += settings_.pause;
+    if (settings_.per_second) {
+      // A move on the way was found to be blocked: it is worth less than it was ranked by.
+      reach_[static_cast<std::size_t>(best.place)] = seconds;
+      if (const double rank = rank_of(best.value, best.place); rank < best.rank * (1 - 1e-9)) {
+        candidates_.push({best.value, best.place, best.scored, rank});
+        continue;
+      }
+    }
+    taken.value = best.value;
+    taken.length += length;
+    for (const int next : way) taken.way.push_back(graph_[next]);
+    taken.time += seconds + settings_.pause;
     keep();
     if (settings_.budget && taken.time > *settings_.budget) {
       candidates_.push(best);
@@ -292,7 +329,7 @@ bool Explorer::choose(EpisodeStep& taken, int& place) {
       return false;
     }
     if (visits_[static_cast<std::size_t>(best.place)] + 1 < settings_.visits)
-      candidates_.push({best.value, best.place, step_});
+      candidates_.push({best.value, best.place, step_, best.rank});
     place = best.place;
     return true;
   }

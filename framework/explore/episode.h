@@ -24,18 +24,19 @@ struct EpisodeSettings {
   static constexpr int kMostLookahead = 4;  // 9^3 ways from each view
 
   ViewSensor sensor;
-  double step = 2.5;                          // m, to a neighbour
-  double turn = 0.4363323129985824;           // rad, to a neighbour: 25 degrees
-  double body = 1;                            // m, edge of the box that must be free
-  double clear = 6;                           // m, edge of the box that is free at the start
-  int visits = 2;                             // images from a viewpoint, then it is left out
-  int lookahead = 1;                          // views of the ways that are valued (lookahead.h)
-  int steps = 200;                            // images
-  double speed = 2;                           // m/s
-  double turn_rate = 1;                       // rad/s
-  double pause = 0.5;                         // s, at rest for an image
-  std::optional<double> budget;               // s of flight
-  std::optional<double> wall_clock_guard;     // s
+  double step = 2.5;                       // m, to a neighbour
+  double turn = 0.4363323129985824;        // rad, to a neighbour: 25 degrees
+  double body = 1;                         // m, edge of the box that must be free
+  double clear = 6;                        // m, edge of the box that is free at the start
+  bool per_second = false;                 // the largest value for each second; else for each image
+  int visits = 2;                          // images from a viewpoint, then it is left out
+  int lookahead = 1;                       // views of the ways that are valued (lookahead.h)
+  int steps = 200;                         // images
+  double speed = 2;                        // m/s
+  double turn_rate = 1;                    // rad/s
+  double pause = 0.5;                      // s, at rest for an image
+  std::optional<double> budget;            // s of flight
+  std::optional<double> wall_clock_guard;  // s
   std::optional<Eigen::AlignedBox3d> bounds;  // the explorer stays inside
   bool show_truth = false;                    // to a utility that needs it
   bool list_candidates = false;               // at the end: takes as long as many steps
@@ -82,10 +83,14 @@ struct EpisodeResult {
   double surface = 0;  // voxels there were to find; 0 without a truth
 
   double observed() const { return steps.empty() ? 0 : steps.back().observed; }
+  double time() const { return steps.empty() ? 0 : steps.back().time; }  // s
   double length() const { return steps.empty() ? 0 : steps.back().length; }
   // (5.6) up to `most` images: the sum over time of the observed surface, which stays as it is
   // after an early end. Before the first image it is 0.
   double efficiency(int most) const;
+  // The same over the time of the flight: the observed surface, integrated from take-off to
+  // `until` s, over `until`. It stays as it is after an early end.
+  double efficiency_in_time(double until) const;
 };
 
 // Told after every image. `neighbours` could be reached from the viewpoint, in their fixed order.

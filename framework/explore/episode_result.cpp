@@ -53,6 +53,18 @@ double EpisodeResult::efficiency(int most) const {
   return sum;
 }
 
+double EpisodeResult::efficiency_in_time(double until) const {
+  if (!(until > 0)) return 0;
+  double sum = 0, observed = 0, since = 0;
+  for (const EpisodeStep& step : steps) {
+    if (step.time >= until) break;
+    sum += observed * (step.time - since);
+    observed = step.observed;
+    since = step.time;
+  }
+  return (sum + observed * (until - since)) / until;
+}
+
 std::vector<double> replay(const EpisodeSettings& settings, const EpisodeResult& flown,
                            const GroundTruth& truth, ObservedSurface& observed, Map& map) {
   ViewSensor sensor = settings.sensor;

@@ -50,10 +50,10 @@ bool ViewpointGraph::free(const Viewpoint& a, const Viewpoint& b) const {
 }
 
 // Dijkstra; of equally quick ways the one found first, in the order of viewpoints.
-std::vector<int> ViewpointGraph::believed_way(int from, int to) const {
+std::vector<double> ViewpointGraph::search(int from, int to, std::vector<int>& before) const {
   const auto count = static_cast<std::size_t>(size());
   std::vector<double> seconds(count, std::numeric_limits<double>::infinity());
-  std::vector<int> before(count, -1);
+  before.assign(count, -1);
   using Open = std::pair<double, int>;
   std::priority_queue<Open, std::vector<Open>, std::greater<>> open;
   seconds[static_cast<std::size_t>(from)] = 0;
@@ -72,6 +72,17 @@ std::vector<int> ViewpointGraph::believed_way(int from, int to) const {
       open.push({there, edge.to});
     }
   }
+  return seconds;
+}
+
+std::vector<double> ViewpointGraph::seconds_from(int from) const {
+  std::vector<int> before;
+  return search(from, -1, before);
+}
+
+std::vector<int> ViewpointGraph::believed_way(int from, int to) const {
+  std::vector<int> before;
+  search(from, to, before);
   std::vector<int> way;
   if (before[static_cast<std::size_t>(to)] < 0) return way;
   for (int at = to; at != from; at = before[static_cast<std::size_t>(at)]) way.push_back(at);

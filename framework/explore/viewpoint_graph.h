@@ -39,6 +39,9 @@ class ViewpointGraph {
 
   // The quickest way, `from` left out; empty where there is none or where `from` is `to`.
   std::vector<int> way(int from, int to);
+  // By place, the seconds of the quickest way by moves that were not found to be blocked; infinite
+  // where there is none.
+  std::vector<double> seconds_from(int from) const;
   // By place, whether there is a way; `from` is reached.
   std::vector<bool> reached_from(int from) const;
 
@@ -48,6 +51,8 @@ class ViewpointGraph {
     double seconds;
     bool blocked = false;
   };
+  // Seconds by place, and in `before` the place before each; until `to` is reached, -1: all.
+  std::vector<double> search(int from, int to, std::vector<int>& before) const;
   std::vector<int> believed_way(int from, int to) const;
   void set_blocked(int a, int b, bool blocked);
 

@@ -42,7 +42,8 @@ Facts summary(const ExplorationRecord& record) {
   add("way", number_text(record.length), "m");
   add("observed surface", std::to_string(std::lround(observed)),
       "of " + std::to_string(std::lround(record.surface)) + " voxels");
-  add("efficiency", std::to_string(std::lround(record.efficiency)), "voxel images");
+  add("efficiency", std::to_string(std::lround(record.efficiency)),
+      record.per_second ? "voxels, mean over the flight" : "voxel images");
   if (record.oracle_efficiency > 0)
     add("relative to the oracle", number_text(record.efficiency / record.oracle_efficiency, 3));
   if (!record.oracle_end.empty())

@@ -205,7 +205,14 @@ void compare_with_oracle(Exploration& e, const GroundTruth& truth,
   EpisodeResult best = explore(settings, e.start, truth, observed, *oracle, *map);
   if (best.end == EpisodeEnd::cancelled) return;
   observe_truly(best, settings, truth, new_map);
-  e.record.oracle_efficiency = best.efficiency(settings.steps);
+  // Over the same time of flight: that of the one that takes longer.
+  if (settings.per_second) {
+    const double until = std::max(best.time(), e.result.time());
+    e.record.efficiency = e.result.efficiency_in_time(until);
+    e.record.oracle_efficiency = best.efficiency_in_time(until);
+  } else {
+    e.record.oracle_efficiency = best.efficiency(settings.steps);
+  }
   if (best.end != EpisodeEnd::steps) e.record.oracle_end = explain(best.end);
   for (const EpisodeStep& step : best.steps) e.record.oracle.push_back(step.observed);
 }
@@ -239,7 +246,9 @@ void record_flight(Exploration& e) {
   record.end = explain(e.result.end);
   record.surface = e.result.surface;
   record.length = e.result.length();
-  record.efficiency = e.result.efficiency(e.settings.steps);
+  record.per_second = e.settings.per_second;
+  record.efficiency = e.settings.per_second ? e.result.efficiency_in_time(e.result.time())
+                                            : e.result.efficiency(e.settings.steps);
   record.resolution = e.map->grid().resolution();
   record_path(e);
 }

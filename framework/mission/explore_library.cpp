@@ -42,6 +42,8 @@ ParameterTable explore_table() {
       .number("clear", standard.clear, "m", "edge of the box that is free at the start", above(0))
       .integer("visits", standard.visits, "largest number of images from a viewpoint",
                between(1, 100))
+      .choice("efficiency", "images", {"images", "seconds"},
+              "what the views are chosen for: surface for each image, or for each second of flight")
       .integer("lookahead", 1, "length of the evaluated view sequences",
                between(1, EpisodeSettings::kMostLookahead))
       .integer("steps", standard.steps, "images", between(1, 1000000))
@@ -83,6 +85,7 @@ EpisodeSettings settings_of(const Parameters& given, const MissionRun& run) {
   s.body = given.number("body");
   s.clear = given.number("clear");
   s.visits = static_cast<int>(given.integer("visits"));
+  s.per_second = given.text("efficiency") == "seconds";
   s.lookahead = static_cast<int>(given.integer("lookahead"));
   s.steps = static_cast<int>(given.integer("steps"));
   s.speed = given.number("speed");

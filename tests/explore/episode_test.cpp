@@ -384,5 +384,71 @@ TEST(RandomStart, LiesWhereTheBoxIsFree) {
             std::string::npos);
 }
 
+// The first way leads to a neighbour of the start, or stays there.
+TEST(Explore, TakesTheLargestValueForEachSecondIfAsked) {
+  YardWorld world(2);
+  world.settings.show_truth = true;
+  world.settings.per_second = true;
+  world.settings.speed = 0.3;
+  world.settings.turn_rate = 3;
+  ObservedSurface observed(world.truth, world.settings.sensor, YardWorld::new_map);
+  const auto map = YardWorld::new_map();
+  const MoveTimes times{world.settings.speed, world.settings.turn_rate};
+  double best = 0, largest = 0;
+  Viewpoint expected, greedy;
+  const auto look = [&](const EpisodeMoment& moment) {
+    if (moment.step > 0) return;
+    std::vector<Viewpoint> views(moment.neighbours.begin(), moment.neighbours.end());
+    views.push_back(moment.taken.view);
+    for (const Viewpoint& view : views) {
+      const double gain = observed.gain(view);
+      const double rate = gain / (times.of(world.start, view) + world.settings.pause);
+      if (rate > best) {
+        best = rate;
+        expected = view;
+      }
+      if (gain > largest) {
+        largest = gain;
+        greedy = view;
+      }
+    }
+  };
+  const EpisodeResult result =
+      explore(world.settings, world.start, world.truth, observed, Oracle(), *map, look);
+  ASSERT_EQ(result.steps.size(), 2u);
+  EXPECT_EQ(result.steps[1].view.position, expected.position);
+  EXPECT_EQ(result.steps[1].view.yaw, expected.yaw);
+  EXPECT_FALSE(expected.position == greedy.position && expected.yaw == greedy.yaw)
+      << "the test tells nothing";
+}
+
+TEST(Explore, SecondsAreWorthMoreToWhoCountsThem) {
+  YardWorld world(60);
+  world.settings.show_truth = true;
+  world.settings.speed = 0.5;
+  const auto flown = [&](bool per_second) {
+    world.settings.per_second = per_second;
+    return world.run(Oracle());
+  };
+  const EpisodeResult images = flown(false), seconds = flown(true);
+  const double until = std::min(images.time(), seconds.time());
+  EXPECT_GT(seconds.efficiency_in_time(until), images.efficiency_in_time(until));
+  EXPECT_GE(images.efficiency(60), seconds.efficiency(60));
+}
+
+TEST(Explore, EfficiencyInTimeIsTheMeanOverTheFlight) {
+  EpisodeResult result;
+  for (const auto& [time, seen] : {std::pair{2.0, 10.0}, {3.0, 40.0}, {7.0, 50.0}}) {
+    EpisodeStep& step = result.steps.emplace_back();
+    step.time = time;
+    step.observed = seen;
+  }
+  EXPECT_DOUBLE_EQ(result.efficiency_in_time(2), 0);
+  EXPECT_DOUBLE_EQ(result.efficiency_in_time(4), (10 * 1 + 40 * 1) / 4.0);
+  EXPECT_DOUBLE_EQ(result.efficiency_in_time(10), (10 * 1 + 40 * 4 + 50 * 3) / 10.0);
+  EXPECT_DOUBLE_EQ(result.efficiency_in_time(0), 0);
+  EXPECT_DOUBLE_EQ(EpisodeResult().efficiency_in_time(5), 0);
+}
+
 }  // namespace
 }  // namespace lapwing
