@@ -162,8 +162,9 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
   const Registry registry = invocation.registry();
   ProgressLine progress("plan", std::cerr, progress_style_of_stderr(invocation.quiet),
                         columns_of_stderr(), &steady_seconds);
-  const auto mission = load_mission(script, invocation, registry, &interruption.token(), &progress,
-                                    [&progress] { progress.clear(); }, {.steps = true});
+  const auto mission =
+      load_mission(script, invocation, registry, &interruption.token(), &progress,
+                   [&progress] { progress.clear(); }, {.surface = {}, .tour = {}, .steps = true});
   registry.find("exporter", "csv");
   RunTarget target(mission->name(), invocation);
   RunOutcome outcome{.target = target};

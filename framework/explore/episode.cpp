@@ -40,6 +40,9 @@ void require_sense(const EpisodeSettings& s, const Map& map) {
   above(s.body, "the edge of the body");
   above(s.speed, "the speed");
   above(s.turn_rate, "the turn rate");
+  if (!(s.acceleration >= 0) || !std::isfinite(s.acceleration) || !(s.turn_acceleration >= 0) ||
+      !std::isfinite(s.turn_acceleration) || (s.acceleration > 0) != (s.turn_acceleration > 0))
+    throw InputError("accelerations of moves must be above 0, or both 0");
   if (!(s.pause >= 0)) throw InputError("the pause for an image must be at least 0 s");
   if (!(s.clear >= s.body)) throw InputError("the box cleared at the start must hold the body");
   if (const double edge = s.clear / map.grid().resolution() + 2; edge * edge * edge > kMostCleared)
@@ -123,8 +126,7 @@ class Explorer {
         before_(before),
         means_(map),
         hidden_(map),
-        graph_(map, Eigen::Vector3d::Constant(settings.body / 2),
-               {settings.speed, settings.turn_rate}) {
+        graph_(map, Eigen::Vector3d::Constant(settings.body / 2), move_times(settings)) {
     known_ = {&map,
               &means_,
               settings.sensor.pinhole,
@@ -302,7 +304,7 @@ bool Explorer::choose(EpisodeStep& taken, int& place) {
       unreachable.push_back(best);
       continue;
     }
-    const MoveTimes times{settings_.speed, settings_.turn_rate};
+    const MoveTimes times = move_times(settings_);
     double seconds = 0, length = 0;
     int from = at_;
     for (const int next : way) {

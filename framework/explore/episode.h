@@ -34,6 +34,8 @@ struct EpisodeSettings {
   int steps = 200;                         // images
   double speed = 2;                        // m/s
   double turn_rate = 1;                    // rad/s
+  double acceleration = 0;                 // m/s^2; 0: moves begin and end at once
+  double turn_acceleration = 0;            // rad/s^2; likewise, both or none
   double pause = 0.5;                      // s, at rest for an image
   std::optional<double> budget;            // s of flight
   std::optional<double> wall_clock_guard;  // s
@@ -92,6 +94,11 @@ struct EpisodeResult {
   // `until` s, over `until`. It stays as it is after an early end.
   double efficiency_in_time(double until) const;
 };
+
+// As the settings say.
+inline MoveTimes move_times(const EpisodeSettings& s) {
+  return {s.speed, s.turn_rate, s.acceleration, s.turn_acceleration};
+}
 
 // Told after every image. `neighbours` could be reached from the viewpoint, in their fixed order.
 struct EpisodeMoment {

@@ -7,9 +7,25 @@
 
 namespace lapwing {
 
+namespace {
+
+double turned(const Viewpoint& a, const Viewpoint& b) {
+  return std::abs(std::remainder(a.yaw - b.yaw, 2 * EIGEN_PI));
+}
+
+}  // namespace
+
 double MoveTimes::of(const Viewpoint& a, const Viewpoint& b) const {
-  const double turned = std::abs(std::remainder(a.yaw - b.yaw, 2 * EIGEN_PI));
-  return (a.position - b.position).norm() / speed + turned / turn_rate;
+  if (acceleration > 0) return std::max(way(a, b).seconds(), turn(a, b).seconds());
+  return (a.position - b.position).norm() / speed + turned(a, b) / turn_rate;
+}
+
+RestProfile MoveTimes::way(const Viewpoint& a, const Viewpoint& b) const {
+  return {(a.position - b.position).norm(), {speed, acceleration, kStep}};
+}
+
+RestProfile MoveTimes::turn(const Viewpoint& a, const Viewpoint& b) const {
+  return {turned(a, b), {turn_rate, turn_acceleration, kStep}};
 }
 
 int ViewpointGraph::add(const Viewpoint& view) {

@@ -6,13 +6,21 @@
 
 #include "framework/explore/viewpoint_index.h"
 #include "framework/map/map.h"
+#include "framework/trajectory/rest_profile.h"
 
 namespace lapwing {
 
-// How long a move takes: straight ways at a speed, turns on the spot.
+// How long a move takes: straight ways at a speed, turns on the spot, one after the other. With
+// accelerations each move is from rest to rest, and the vehicle turns on the way (rest_profile.h).
 struct MoveTimes {
-  double speed = 1, turn_rate = 1;  // m/s, rad/s
+  static constexpr double kStep = 0.05;  // s, between samples of moves from rest to rest
+
+  double speed = 1, turn_rate = 1;                 // m/s, rad/s
+  double acceleration = 0, turn_acceleration = 0;  // m/s^2, rad/s^2; 0: at once
   double of(const Viewpoint& a, const Viewpoint& b) const;
+  // Of a move from rest to rest; both accelerations are above 0.
+  RestProfile way(const Viewpoint& a, const Viewpoint& b) const;
+  RestProfile turn(const Viewpoint& a, const Viewpoint& b) const;
 };
 
 // Viewpoints, and moves between neighbours that were free when they were added. Shortest ways are

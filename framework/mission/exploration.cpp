@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "framework/core/phases.h"
+#include "framework/core/units.h"
 #include "framework/explore/view_grid.h"
 #include "framework/explore/view_rays.h"
 
@@ -154,11 +155,14 @@ std::optional<double> cut_height(const MeshScene& scene, const Viewpoint& start)
   return roofed ? std::optional(start.position.z()) : std::nullopt;
 }
 
-Trajectory trajectory_of(const Exploration& e, bool gimbal) {
+namespace {
+
+// Positions and headings alone.
+Trajectory path_of(const Exploration& e, bool gimbal) {
   Trajectory trajectory;
   trajectory.motion = path_motion();
   trajectory.has_gimbal = gimbal;
-  const MoveTimes times{e.settings.speed, e.settings.turn_rate};
+  const MoveTimes times = move_times(e.settings);
   const auto add = [&](const Viewpoint& view, double time) {
     Sample sample;
     sample.time = time;
@@ -181,6 +185,79 @@ Trajectory trajectory_of(const Exploration& e, bool gimbal) {
     if (e.settings.pause > 0) add(at, time);
   }
   return trajectory;
+}
+
+// From rest to rest along every move, as the motion model `force`.
+class RestFlight {
+ public:
+  RestFlight(const Exploration& e, const Vehicle& vehicle)
+      : vehicle_(vehicle), times_(move_times(e.settings)), at_(e.start) {
+    trajectory_.has_gimbal = vehicle.gimbal.has_value();
+    now_.position = at_.position;
+    now_.yaw = at_.yaw;
+    now_.gimbal_pitch = at_.pitch;
+  }
+
+  void move(const Viewpoint& to) {
+    const RestProfile way = times_.way(at_, to), turn = times_.turn(at_, to);
+    const Eigen::Vector3d between = to.position - at_.position;
+    const Eigen::Vector3d along = between.stableNormalized();
+    const double turned = std::remainder(to.yaw - at_.yaw, 2 * EIGEN_PI);
+    const double yaw = now_.yaw + turned, h = MoveTimes::kStep;
+    for (int k = 0; k < std::max(way.steps(), turn.steps()); ++k) {
+      const Eigen::Vector3d a = way.acceleration(k) * along;
+      const double spin = turned < 0 ? -turn.acceleration(k) : turn.acceleration(k);
+      sample(a, spin);
+      now_.time += h;
+      now_.position += h * now_.velocity + h * h / 2 * a;
+      now_.velocity += h * a;
+      now_.yaw += h * now_.yaw_rate + h * h / 2 * spin;
+      now_.yaw_rate += h * spin;
+    }
+    // What rounding has left over.
+    now_.position = to.position;
+    now_.velocity.setZero();
+    now_.yaw = yaw;
+    now_.yaw_rate = 0;
+    at_ = to;
+  }
+  void rest(double seconds) {
+    if (!(seconds > 0)) return;
+    sample(Eigen::Vector3d::Zero(), 0);
+    now_.time += seconds;
+  }
+  Trajectory end() && {
+    sample(Eigen::Vector3d::Zero(), 0);
+    return std::move(trajectory_);
+  }
+
+ private:
+  void sample(const Eigen::Vector3d& a, double spin) {
+    now_.acceleration = a;
+    now_.columns.set("force",
+                     Eigen::Vector3d(vehicle_.mass * (a + Eigen::Vector3d(0, 0, kGravity))));
+    now_.columns.set("yaw_torque", vehicle_.inertia.z() * spin);
+    trajectory_.samples.push_back(now_);
+  }
+
+  const Vehicle& vehicle_;
+  const MoveTimes times_;
+  Viewpoint at_;
+  Sample now_;
+  Trajectory trajectory_;
+};
+
+}  // namespace
+
+Trajectory trajectory_of(const Exploration& e, const Vehicle& vehicle) {
+  if (!(e.settings.acceleration > 0) || !vehicle.has_rotors)
+    return path_of(e, vehicle.gimbal.has_value());
+  RestFlight flight(e, vehicle);
+  for (const EpisodeStep& step : e.result.steps) {
+    for (const Viewpoint& next : step.way) flight.move(next);
+    flight.rest(e.settings.pause);
+  }
+  return std::move(flight).end();
 }
 
 void observe_truly(EpisodeResult& flown, const EpisodeSettings& settings, const GroundTruth& truth,

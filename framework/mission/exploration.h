@@ -12,6 +12,7 @@
 #include "framework/export/map_pictures.h"
 #include "framework/plugin/registry.h"
 #include "framework/trajectory/trajectory.h"
+#include "framework/vehicle/vehicle.h"
 
 namespace lapwing {
 
@@ -65,8 +66,9 @@ ExplorationSight sight_of(const EpisodeView& known, const Viewpoint& view);
 // Under a roof the picture from above is of what lies below the start: a room without its ceiling.
 std::optional<double> cut_height(const MeshScene& scene, const Viewpoint& start);
 
-// The flown path: at rest in every view for as long as an image takes.
-Trajectory trajectory_of(const Exploration& exploration, bool gimbal);
+// The flight: from rest to rest along every move, at rest in every view for as long as an image
+// takes. Where moves begin and end at once, and for vehicles without rotors, positions alone.
+Trajectory trajectory_of(const Exploration& exploration, const Vehicle& vehicle);
 
 // A noisy camera is judged by the same views with true depth, as table 5.4 does: noise would be
 // taken for surface.

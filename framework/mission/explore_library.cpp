@@ -49,6 +49,8 @@ ParameterTable explore_table() {
       .integer("steps", standard.steps, "images", between(1, 1000000))
       .number("speed", standard.speed, "m/s", "speed between viewpoints", above(0))
       .number("turn_rate_deg", 60, "deg/s", "turn rate on the spot", above(0))
+      .number("acceleration", 0, "m/s^2", "of moves from rest to rest; 0: at once", at_least(0))
+      .number("turn_acceleration_deg", 0, "deg/s^2", "likewise, of turns", at_least(0))
       .number("pause", standard.pause, "s", "pause for an image", at_least(0))
       .optional_number("budget", "s", "flight time", above(0))
       .optional_number("wall_clock_guard", "s", "limit of computing time", above(0))
@@ -90,6 +92,8 @@ EpisodeSettings settings_of(const Parameters& given, const MissionRun& run) {
   s.steps = static_cast<int>(given.integer("steps"));
   s.speed = given.number("speed");
   s.turn_rate = radians(given.number("turn_rate_deg"));
+  s.acceleration = given.number("acceleration");
+  s.turn_acceleration = radians(given.number("turn_acceleration_deg"));
   s.pause = given.number("pause");
   if (given.has("budget")) s.budget = given.number("budget");
   if (given.has("wall_clock_guard")) s.wall_clock_guard = given.number("wall_clock_guard");
@@ -158,7 +162,7 @@ int plan_exploration(lua_State* state) {
   document.mission = run.name;
   document.kind = run.kind;
   document.vehicle = to_value(vehicle);
-  document.trajectory = trajectory_of(e, vehicle.gimbal.has_value());
+  document.trajectory = trajectory_of(e, vehicle);
   document.budget = e.settings.budget;
   document.geodetic_origin = run.origin;
   document.home = run.home;

@@ -24,6 +24,26 @@ TEST_F(Exploring, AMeshIsExploredTheSameByAnyNumberOfThreads) {
     EXPECT_NE(report.find(section), std::string::npos) << section;
 }
 
+// The plan is a motion that a simulated vehicle follows, and its time is that of the exploration.
+TEST_F(Exploring, AnExplorationIsFlown) {
+  for (const char* choice : {"images", "seconds"}) {
+    const Flown flown = explore(std::string("--set steps=6 --set efficiency=") + choice, choice);
+    ASSERT_EQ(flown.status, 0) << choice;
+    double worst = -1;
+    for (const Value& check : flown.result.at("certificate").at("checks").as_list())
+      if (check.at("name").as_text() == "closed_loop") worst = check.at("worst").as_number();
+    EXPECT_GE(worst, 0) << "nothing was flown";
+    EXPECT_LT(worst, 0.05) << choice;
+    const Value plan = from_json(read_file(flown.folder / "plan.json"), "plan");
+    EXPECT_EQ(plan.at("trajectory").at("motion").as_text(), "force");
+  }
+  const Flown slow = explore("--set steps=6 --set moves.acceleration=0.3", "slow");
+  EXPECT_EQ(slow.status, 0);
+  EXPECT_NE(refusal(few("--set moves.acceleration=0")).find("moves.acceleration"),
+            std::string::npos);
+  EXPECT_NE(refusal(few("--set efficiency=metres")).find("efficiency"), std::string::npos);
+}
+
 TEST_F(Exploring, UtilitiesAreSwappedByConfiguration) {
   const double oracle = explore("--set utility=oracle", "oracle")
                             .result.at("exploration")
