@@ -30,8 +30,8 @@ Value shortened(Value value) {
   if (value.type() == Value::Type::number) {
     char text[40];
     const double number = value.as_number();
-    const auto end = std::to_chars(text, text + sizeof text, number, std::chars_format::general,
-                                   kDigits);
+    const auto end =
+        std::to_chars(text, text + sizeof text, number, std::chars_format::general, kDigits);
     double read = number;
     std::from_chars(text, end.ptr, read);
     return read;
@@ -88,8 +88,8 @@ std::optional<Viewer> viewer_of(const MissionResult& result, const Certificate& 
   on.coarse = true;
   DrawnSurfaces drawn;
   WorldMessage world = world_message(result.plan, result.obstacle_folder, on, drawn);
-  Viewer viewer{text("/"), text("/app.css"), text("/app.js"),
-                told_of(result, certificate, world.text), {}};
+  Viewer viewer{
+      text("/"), text("/app.css"), text("/app.js"), told_of(result, certificate, world.text), {}};
   for (auto& [name, bytes] : world.blobs) viewer.blobs.emplace_back(name, std::move(bytes));
   return viewer;
 }

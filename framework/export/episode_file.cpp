@@ -126,7 +126,8 @@ std::string episode_text(const fs::path& folder) {
   if (kind != "explore")
     throw InputError(named + " is of a mission of kind '" + kind + "': only explorations have " +
                      "episodes");
-  throw InputError(named + " has no episode.json: a version of lapwing that wrote none has run it; " +
+  throw InputError(named +
+                   " has no episode.json: a version of lapwing that wrote none has run it; " +
                    "run the mission again");
 }
 
@@ -181,9 +182,8 @@ std::string sights_bytes(const std::vector<ExplorationSight>& sights) {
   const ExplorationSight none;
   const ExplorationSight& first = sights.empty() ? none : sights.front();
   std::string bytes = "WLV1";
-  for (const std::size_t count :
-       {sights.size(), static_cast<std::size_t>(first.grid.points),
-        first.grid.edges.size(), first.rays.size()})
+  for (const std::size_t count : {sights.size(), static_cast<std::size_t>(first.grid.points),
+                                  first.grid.edges.size(), first.rays.size()})
     add_number(bytes, static_cast<std::uint32_t>(count));
   for (const double edge : first.grid.edges) add_number(bytes, static_cast<float>(edge));
   for (const ExplorationSight& sight : sights) {

@@ -61,11 +61,11 @@ struct ExplorationSight {
 // An image while the exploration goes on.
 struct TakenImage {
   std::string utility;
-  int image = 0, asked = 0;        // from 1 on; of so many
-  double surface = 0;              // voxels there are to find
-  double resolution = 0;           // m, of the map
+  int image = 0, asked = 0;  // from 1 on; of so many
+  double surface = 0;        // voxels there are to find
+  double resolution = 0;     // m, of the map
   ExplorationImage taken;
-  std::optional<double> observed;  // (5.2); with a noisy camera it is known at the end
+  std::optional<double> observed;      // (5.2); with a noisy camera it is known at the end
   std::vector<Eigen::Vector3f> grown;  // middles of voxels that are occupied for the first time
   ExplorationSight sight;
 };
@@ -88,8 +88,8 @@ struct ExplorationRecord {
   std::vector<ExplorationImage> images;
   std::vector<GrownVoxel> growth;        // by image; empty where it was not asked for
   std::vector<ExplorationSight> sights;  // of each image; likewise
-  double resolution = 0;           // m, of the map
-  std::vector<GridSlices> grids;   // around the last view
+  double resolution = 0;                 // m, of the map
+  std::vector<GridSlices> grids;         // around the last view
 };
 
 // Summary, growth of the map, path, observed surface over images, candidates.

@@ -40,8 +40,8 @@ std::array<float, 4> figures_of(const TrianglePrediction& told) {
           figure(two, degrees(told.parallax)), figure(two, 1000.0 * told.accuracy)};
 }
 
-// Which corners fall into one, and of the triangles that keep three different ones the first of each
-// kind.
+// Which corners fall into one, and of the triangles that keep three different ones the first of
+// each kind.
 struct Coarse {
   std::vector<Eigen::Vector3d> corners;
   std::vector<std::array<std::uint16_t, 3>> triangles;
@@ -166,9 +166,8 @@ std::string coarse_prediction(const ScanPrediction& p, std::size_t most) {
     for (int i = 0; i < 3; ++i) append_bytes(bytes, static_cast<float>(v[i]));
   for (const Eigen::Vector3d& v : coarse.corners)
     for (int i = 0; i < 3; ++i)
-      append_bytes(bytes,
-                   static_cast<std::uint16_t>(std::lround(
-                       65535 * std::clamp((v[i] - box.min()[i]) / size[i], 0.0, 1.0))));
+      append_bytes(bytes, static_cast<std::uint16_t>(std::lround(
+                              65535 * std::clamp((v[i] - box.min()[i]) / size[i], 0.0, 1.0))));
   for (std::size_t k = 0; k < coarse.triangles.size(); ++k) {
     const std::size_t t = coarse.of[k];
     for (const std::uint16_t corner : coarse.triangles[k]) append_bytes(bytes, corner);

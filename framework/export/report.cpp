@@ -223,14 +223,14 @@ class Page {
 
   void block(const Image& image) {
     require_png(image.png, image.caption);
-    out_ += "<figure class=\"block image wide" + viewed(image.viewed) + "\"><img alt=\"" + markup_text(image.caption) +
-            "\" src=\"data:image/png;base64," + base64(image.png) + "\"><figcaption>" +
-            markup_text(image.caption) + "</figcaption></figure>\n";
+    out_ += "<figure class=\"block image wide" + viewed(image.viewed) + "\"><img alt=\"" +
+            markup_text(image.caption) + "\" src=\"data:image/png;base64," + base64(image.png) +
+            "\"><figcaption>" + markup_text(image.caption) + "</figcaption></figure>\n";
   }
 
   void block(const FilmStrip& strip) {
-    out_ += "<figure class=\"block strip wide" + viewed(strip.viewed) + "\"><figcaption>" + markup_text(strip.title) +
-            "</figcaption>\n<div class=\"frames\">\n";
+    out_ += "<figure class=\"block strip wide" + viewed(strip.viewed) + "\"><figcaption>" +
+            markup_text(strip.title) + "</figcaption>\n<div class=\"frames\">\n";
     for (const FilmFrame& frame : strip.frames) {
       require_png(frame.png, strip.title);
       out_ += "<div><div class=\"picture\"><img alt=\"" + markup_text(frame.caption) +

@@ -204,9 +204,9 @@ struct Section {
 
 // A page that shows what was planned in 3D, in a frame of its own: its files, and what it draws.
 struct Viewer {
-  std::string page, style, script;                          // app.css and app.js are put inside
-  std::string told;                                         // JSON, which the script reads
-  std::vector<std::pair<std::string, std::string>> blobs;   // that it names
+  std::string page, style, script;                         // app.css and app.js are put inside
+  std::string told;                                        // JSON, which the script reads
+  std::vector<std::pair<std::string, std::string>> blobs;  // that it names
 };
 
 struct Report {

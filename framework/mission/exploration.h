@@ -56,8 +56,8 @@ class Growth {
   std::unordered_map<std::uint64_t, std::uint32_t> first_;  // by morton code
 };
 
-// A middle slice of what a learned utility is shown around a view, with as many points ahead, across
-// and, of half of that, up. Level by level, the finest first.
+// A middle slice of what a learned utility is shown around a view, with as many points ahead,
+// across and, of half of that, up. Level by level, the finest first.
 GridSlices grid_slices(const EpisodeView& known, const Viewpoint& view, int points, int levels);
 // What a view is chosen by: 16 points along an edge, 4 levels, and 12 x 9 rays.
 ExplorationSight sight_of(const EpisodeView& known, const Viewpoint& view);

@@ -18,11 +18,12 @@ constexpr std::size_t kMostAfter = 64;  // as many as may wait
 constexpr std::size_t kMostPlayers = 8;
 constexpr std::int64_t kLargestNumber = (std::int64_t{1} << 53) - 1;
 
-constexpr std::array kTypes{
-    Type::hello,       Type::preview,        Type::gesture, Type::undo,    Type::redo,
-    Type::rest,        Type::resolve_script, Type::fly,     Type::picture, Type::export_plan,
-    Type::save_report, Type::export_lua,     Type::race,    Type::stick,   Type::list_runs,
-    Type::open_run,    Type::pace};
+constexpr std::array kTypes{Type::hello,          Type::preview,     Type::gesture,
+                            Type::undo,           Type::redo,        Type::rest,
+                            Type::resolve_script, Type::fly,         Type::picture,
+                            Type::export_plan,    Type::save_report, Type::export_lua,
+                            Type::race,           Type::stick,       Type::list_runs,
+                            Type::open_run,       Type::pace};
 
 Type type_named(const std::string& name) {
   for (const Type type : kTypes)

@@ -112,7 +112,7 @@ class StudioSession {
     int rank = -1;                          // of the best answer so far
     int crashes = 0;                        // of a process that was at it
     Frame frame = {};
-    std::vector<Frame> answers = {};  // the last of each rank
+    std::vector<Frame> answers = {};       // the last of each rank
     std::vector<std::string> images = {};  // of an exploration so far, without a revision
     bool paused = false;
   };

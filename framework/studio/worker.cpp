@@ -319,8 +319,7 @@ class StudioWorker {
 
   void wait_while_paused() {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock,
-                  [&] { return ended_ || whole_->cancelled() || !paused_ || steps_ > 0; });
+    changed_.wait(lock, [&] { return ended_ || whole_->cancelled() || !paused_ || steps_ > 0; });
     if (paused_ && steps_ > 0) --steps_;
   }
 

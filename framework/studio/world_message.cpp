@@ -196,7 +196,8 @@ WorldMessage world_message(const Plan& plan, const std::filesystem::path& folder
   if (on.exploration) {
     Value& told = world.set("exploration", exploration_value(*on.exploration));
     if (!on.exploration->growth.empty()) told.set("growth", put(growth_bytes(*on.exploration)));
-    if (!on.exploration->sights.empty()) told.set("sights", put(sights_bytes(on.exploration->sights)));
+    if (!on.exploration->sights.empty())
+      told.set("sights", put(sights_bytes(on.exploration->sights)));
   }
   message.text = to_json(world, -1);
   return message;
