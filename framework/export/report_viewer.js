@@ -13,10 +13,12 @@ function showViewer(figure) {
     blob: (name) => document.getElementById(`viewer-${name}`)?.textContent ?? null,
   };
   frame.addEventListener("drawn", () => { figure.classList.add("drawn"); });
+  // Nothing here may look like the tags of this page's own scripts.
+  const element = (name, content) => `<${name}>${content}</${name}>`;
   frame.srcdoc = page
-    .replace('<link rel="stylesheet" href="app.css">', () => `<style>${text("style")}</style>`)
-    .replace('<script defer src="app.js"><\/script>', "")
-    .replace("</body>", () => `<script>${text("script")}<\/script></body>`);
+    .replace('<link rel="stylesheet" href="app.css">', () => element("style", text("style")))
+    .replace(new RegExp("<(script) defer[^>]*></\\1>"), "")
+    .replace("</body>", () => `${element("script", text("script"))}</body>`);
   figure.append(frame);
 }
 

@@ -7,6 +7,7 @@
 -- A drawing is a text in a font of strokes, an SVG picture, or points. It is vertical. `base` is
 -- the centre of its lower edge. Spectators look along `view_yaw_deg`.
 local mission_of = require "mission.mission_of"
+local drawing_times = require "mission.drawing_times"
 local drawings = require "mission.drawings"
 local order = require "mission.stroke_order"
 local paths = require "mission.paths"
@@ -67,14 +68,7 @@ local DECLARATIONS = {
     summary = "plugin that flies the plan; absent: that of the vehicle, or `thesis`" },
 }
 
-local SPACING = 0.01     -- m, between points of the timed path
 local SLOWER = 0.8       -- speed of the next try
-
-local function at_share(times, share)
-  local place = 1 + share * (#times - 1)
-  local k = math.min(math.floor(place), #times - 1)
-  return times[k] + (place - k) * (times[k + 1] - times[k])
-end
 
 -- Places on the timed path at every stage.
 local function places_of(timed, count, duration)
@@ -103,46 +97,6 @@ local function stages_of(o, duration)
                               math.ceil(1000 * needed) / 1000)
   end
   return nil, text .. "; draw smaller (height), less, or faster (speed, acceleration)"
-end
-
--- The timed path and when the light is on: with a gap from rest to rest, stroke by stroke.
-local function timed_with_gaps(run, strokes, limits, gap)
-  local made, lights, now = { points = {}, times = {} }, {}, 0
-  local function fly(points)
-    limits.points = paths.flat(points)
-    local timed = run:time_path(limits)
-    table.move(timed.points, 1, #timed.points, #made.points + 1, made.points)
-    for _, time in ipairs(timed.times) do made.times[#made.times + 1] = now + time end
-    now = made.times[#made.times]
-  end
-  for i, stroke in ipairs(strokes) do
-    local before = strokes[i - 1]
-    if before then
-      if paths.distance(before[#before], stroke[1]) > 1e-6 then
-        fly { before[#before], stroke[1] }
-      end
-      now = now + gap
-    end
-    local start = now
-    fly(stroke)
-    lights[i] = { start = start, finish = now }
-  end
-  return made, lights
-end
-
-local function timed_at_once(run, strokes, limits)
-  local path, lit = drawings.joined(strokes)
-  limits.points = paths.flat(path)
-  local timed = run:time_path(limits)
-  local lights = {}
-  for _, span in ipairs(lit) do
-    local light = { start = at_share(timed.times, span[1]),
-                    finish = at_share(timed.times, span[2]) }
-    local before = lights[#lights]
-    if before and light.start <= before.finish then before.finish = light.finish
-    else lights[#lights + 1] = light end
-  end
-  return timed, lights
 end
 
 -- Rad: of the view, turned about, between -pi and pi.
@@ -228,12 +182,12 @@ local function painted(run)
   while true do
     run:phase(share == 1 and "painting" or string.format("painting at %.2g of the speed", share))
     local limits = {
-      spacing = SPACING, rounding = o.rounding, speed = share * math.min(o.speed, fastest),
+      rounding = o.rounding, speed = share * math.min(o.speed, fastest),
       acceleration = share ^ 2 * math.min(o.acceleration, strongest),
     }
     local timed, lights
-    if o.gap > 0 then timed, lights = timed_with_gaps(run, strokes, limits, o.gap)
-    else timed, lights = timed_at_once(run, strokes, limits) end
+    if o.gap > 0 then timed, lights = drawing_times.with_gaps(run, strokes, limits, o.gap)
+    else timed, lights = drawing_times.at_once(run, strokes, limits) end
     local solution, too_long, step = solved(run, timed, vehicle)
     if not solution and not best then run:fail(o.step and "step" or "speed", too_long) end
     if solution then

@@ -450,5 +450,39 @@ TEST(Explore, EfficiencyInTimeIsTheMeanOverTheFlight) {
   EXPECT_DOUBLE_EQ(EpisodeResult().efficiency_in_time(5), 0);
 }
 
+// Who hears of a view before its image sees the map that it was chosen by, and changes nothing.
+TEST(Episode, ChoicesAreToldBeforeTheirImages) {
+  const YardWorld world(4);
+  const auto flown = [&](const ChoiceObserver& before, std::vector<std::uint64_t>* known) {
+    const auto map = YardWorld::new_map();
+    ObservedSurface observed(world.truth, world.settings.sensor, YardWorld::new_map);
+    return explore(
+        world.settings, world.start, world.truth, observed, Constant(1), *map,
+        [&](const EpisodeMoment& moment) {
+          if (known) known->push_back(moment.known.map->counts().known);
+        },
+        before);
+  };
+  std::vector<std::uint64_t> before, after;
+  std::vector<Viewpoint> chosen;
+  const EpisodeResult told = flown(
+      [&](const EpisodeChoice& choice) {
+        EXPECT_EQ(choice.step, static_cast<int>(chosen.size()));
+        before.push_back(choice.known.map->counts().known);
+        chosen.push_back(choice.view);
+      },
+      &after);
+  const EpisodeResult untold = flown({}, nullptr);
+  ASSERT_EQ(told.steps.size(), 4u);
+  ASSERT_EQ(chosen.size(), 4u);
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    EXPECT_EQ(chosen[k].position, told.steps[k].view.position);
+    EXPECT_EQ(told.steps[k].view.position, untold.steps[k].view.position);
+    EXPECT_LE(before[k], after[k]);
+    if (k > 0) EXPECT_EQ(before[k], after[k - 1]);
+  }
+  EXPECT_LT(before.front(), after.front());
+}
+
 }  // namespace
 }  // namespace lapwing

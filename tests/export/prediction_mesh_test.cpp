@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/core/error.h"
 #include "framework/core/json.h"
 
 namespace lapwing {
@@ -112,6 +113,37 @@ TEST(PredictionMesh, ThePlyHoldsTheSame) {
   std::int32_t images = 0;
   std::memcpy(&images, ply.data() + head + 5 * 12 + 2 * kFace + 16, 4);
   EXPECT_EQ(images, -1);
+}
+
+// Of as many triangles as it may have, the surface itself; with fewer, some of them, each with the
+// figures of one.
+TEST(PredictionMesh, ACoarseSurfaceKeepsFiguresAndIsSmall) {
+  const std::string bytes = coarse_prediction(three_triangles(), 1000);
+  ASSERT_EQ(bytes.substr(0, 4), "WLP1");
+  ASSERT_EQ(Glb::word(bytes, 4), 5u);
+  ASSERT_EQ(Glb::word(bytes, 8), 3u);
+  ASSERT_EQ(bytes.size(), 36 + 5 * 6 + 3 * 24u);
+  const auto figure = [&](std::size_t triangle, std::size_t which) {
+    std::string raw(1, '\0');
+    raw += bytes.substr(36 + 5 * 6 + 24 * triangle + 12 + 3 * which, 3);
+    float number = 0;
+    std::memcpy(&number, raw.data(), sizeof number);
+    return number;
+  };
+  const auto images = [&](std::size_t triangle) {
+    std::int16_t number = 0;
+    std::memcpy(&number, bytes.data() + 36 + 5 * 6 + 24 * triangle + 6, sizeof number);
+    return number;
+  };
+  EXPECT_EQ(images(0), 1);
+  EXPECT_EQ(images(1), 4);
+  EXPECT_EQ(images(2), -1);              // outside the region
+  EXPECT_NEAR(figure(1, 3), 12, 12e-4);  // mm
+  EXPECT_EQ(figure(0, 3), -1);
+  const std::string small = coarse_prediction(three_triangles(), 1);
+  EXPECT_LE(Glb::word(small, 8), 1u);
+  EXPECT_THROW(coarse_prediction(three_triangles(), 0), InputError);
+  EXPECT_THROW(coarse_prediction(three_triangles(), kMostCoarse + 1), InputError);
 }
 
 }  // namespace

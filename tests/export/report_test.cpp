@@ -201,5 +201,29 @@ TEST(NumberText, FourDigitsAndATrueMinus) {
   EXPECT_EQ(number_text(1.0 / 3, 2), "0.33");
 }
 
+// The viewer stands in the place of the first picture that it may replace; nothing in its files
+// ends the elements that hold them.
+TEST(Report, ThePageOfAViewerIsInsideOnce) {
+  Image image{std::string("\x89PNG\r\n\x1a\n"), "a picture", true};
+  Report report = with(image);
+  report.sections.front().blocks.push_back(image);
+  EXPECT_FALSE(contains(render_html(report), "viewer-page"));
+  report.viewer = Viewer{"<html></html>",
+                         "a::after { content: '</style>' }",
+                         "let a = '</script><!--';",
+                         R"({"name": "</script>"})",
+                         {{"abc", "1"}}};
+  const std::string html = render_html(report);
+  std::size_t figures = 0;
+  for (std::size_t at = html.find("wide viewed\""); at != std::string::npos;
+       at = html.find("wide viewed\"", at + 1))
+    ++figures;
+  EXPECT_EQ(figures, 1u);
+  EXPECT_TRUE(contains(html, "id=\"viewer-script\">let a = '<\\/script><\\!--';</script>"));
+  EXPECT_TRUE(contains(html, "id=\"viewer-told\">{\"name\": \"\\u003c/script>\"}</script>"));
+  EXPECT_TRUE(contains(html, "id=\"viewer-abc\">MQ==</script>"));
+  EXPECT_FALSE(contains(html, "'</style>'"));
+}
+
 }  // namespace
 }  // namespace lapwing

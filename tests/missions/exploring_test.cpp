@@ -18,6 +18,8 @@ TEST_F(Exploring, AMeshIsExploredTheSameByAnyNumberOfThreads) {
   EXPECT_EQ(figures.at("images").as_integer(), 8);
   EXPECT_EQ(read_file(one.folder / "plan.json"), read_file(two.folder / "plan.json"));
   EXPECT_EQ(read_file(one.folder / "map.ot"), read_file(two.folder / "map.ot"));
+  for (const char* file : {"episode.json", "episode_growth.bin", "episode_sights.bin"})
+    EXPECT_EQ(read_file(one.folder / file), read_file(two.folder / file)) << file;
   const std::string report = read_file(one.folder / "report.html");
   for (const char* section : {"Growth of the map", "Candidates at the last step",
                               "relative to the oracle", "Certainty, 64 points along an edge"})
@@ -35,7 +37,7 @@ TEST_F(Exploring, AnExplorationIsFlown) {
     EXPECT_GE(worst, 0) << "nothing was flown";
     EXPECT_LT(worst, 0.05) << choice;
     const Value plan = from_json(read_file(flown.folder / "plan.json"), "plan");
-    EXPECT_EQ(plan.at("trajectory").at("motion").as_text(), "force");
+    EXPECT_EQ(plan.at("motion").at("model").as_text(), "force");
   }
   const Flown slow = explore("--set steps=6 --set moves.acceleration=0.3", "slow");
   EXPECT_EQ(slow.status, 0);

@@ -49,6 +49,26 @@ TEST_F(LightPainting, TheHeartOfAPictureIsDrawn) {
   EXPECT_LT(mean_error(flown), 0.005);
 }
 
+// With a gap it rests in the dark before each further stroke; facing the camera it looks back along
+// the view. Neither costs accuracy.
+TEST_F(LightPainting, GapsAndFacingAreKept) {
+  const Flown plain = paint("text = 'TI'", "", "plain");
+  const Flown flown =
+      paint("text = 'TI', gap = 1, facing = 'camera', view_yaw_deg = 60", "", "gap");
+  expect_certified(flown);
+  EXPECT_LT(mean_error(flown), 0.005);
+  const Plan plan = read_plan(flown.folder / "plan.json"),
+             without = read_plan(plain.folder / "plan.json");
+  ASSERT_EQ(plan.lights.size(), plan.task.strokes.size());
+  for (std::size_t k = 1; k < plan.lights.size(); ++k)
+    EXPECT_GE(plan.lights[k].start, plan.lights[k - 1].finish + 1 - 1e-6);
+  for (const Sample& sample : plan.trajectory.samples)
+    EXPECT_NEAR(std::cos(sample.yaw - (60 - 180) * EIGEN_PI / 180), 1, 1e-6);
+  for (const Sample& sample : without.trajectory.samples) EXPECT_NEAR(sample.yaw, 0, 1e-6);
+  EXPECT_NE(refused("text = 'TI', gap = -1").find("gap"), std::string::npos);
+  EXPECT_NE(refused("text = 'TI', facing = 'up'").find("facing"), std::string::npos);
+}
+
 class SlowLightPainting : public LightPainting {};
 
 // Fig. 3.8 B: with much weight on smoothness the letters are round, and the certificate says so.

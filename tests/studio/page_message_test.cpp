@@ -23,7 +23,10 @@ const char* const kGood[] = {
     R"({"type": "export", "id": "e", "format": "csv"})",
     R"({"type": "export", "id": "e", "format": "x", "parameters": {"r": 5}, "uncertified": true})",
     R"({"type": "save_report", "id": "s"})",
-    R"({"type": "export_lua", "id": "l"})"};
+    R"({"type": "export_lua", "id": "l"})",
+    R"({"type": "list_runs", "id": "r"})",
+    R"({"type": "open_run", "id": "r", "folder": "explore_city"})",
+    R"({"type": "pace", "pace": "step"})"};
 
 TEST(PageMessages, AreReadWithTheirFields) {
   for (const char* text : kGood) EXPECT_NO_THROW(page_message(text)) << text;
@@ -117,6 +120,16 @@ TEST(Blobs, TrianglesAreAHeaderThenArrays) {
   float y = 0;
   std::memcpy(&y, blob.data() + 16 + 4 * 7, 4);
   EXPECT_EQ(y, 2.5f);
+}
+
+// A page names a folder of out/ and nothing else.
+TEST(PageMessages, AFolderIsAName) {
+  for (const char* folder : {"..", ".", "a/b", "/etc", "../x", ".hidden", ""}) {
+    const std::string text =
+        std::string(R"({"type": "open_run", "id": "r", "folder": ")") + folder + "\"}";
+    EXPECT_THROW(page_message(text), InputError) << folder;
+  }
+  EXPECT_THROW(page_message(R"({"type": "pace", "pace": "fast"})"), InputError);
 }
 
 }  // namespace

@@ -274,6 +274,58 @@ TEST_F(StudioKinds, AnExplorationTellsHowItsMapGrew) {
   EXPECT_EQ(from_json(text, "map info").at("occupied"), Value(std::int64_t{count}));
 }
 
+// Image by image while it is planned: it waits and takes one more; a newer edit ends it. Then the
+// folder of its run, without planning; one of another version is refused.
+TEST_F(StudioKinds, AnExplorationIsSteppedThroughAndOpenedFromItsFolder) {
+  use("explore/city.lua");
+  const StudioAddress address = serve({"--set", "steps=6"});
+  PageClient page(address, "a");
+  const auto [world, answer] = told(page);
+  const Value images = world.at("exploration").at("images");
+  // --set was the first edit.
+  ASSERT_TRUE(page.send(gesture("g", 1, {change("steps", 40)})));
+  const Value first = page.until_type("image");
+  EXPECT_EQ(first.at("asked"), Value(40));
+  EXPECT_EQ(blob(address, first.at("sights")).substr(0, 4), "WLV1");
+  ASSERT_TRUE(page.send_text(R"({"type": "pace", "pace": "pause"})"));
+  page.until_type("pace");
+  Value last = first;
+  for (Value more = page.receive(std::chrono::milliseconds(1500)); !more.is_null();
+       more = page.receive(std::chrono::milliseconds(1500)))
+    if (more.at("type") == Value("image")) last = more;
+  const std::int64_t waiting = last.at("image").as_integer();
+  EXPECT_LT(waiting, 40);
+  ASSERT_TRUE(page.send_text(R"({"type": "pace", "pace": "step"})"));
+  last = page.until_type("image");
+  EXPECT_EQ(last.at("image"), Value(waiting + 1));
+  // The figures of the finished one, as far as both go.
+  const auto at = static_cast<std::size_t>(last.at("image").as_integer() - 1);
+  if (at < images.as_list().size())
+    for (const char* key : {"time", "value", "observed", "yaw"})
+      EXPECT_EQ(last.at(key), images.as_list()[at].at(key)) << key;
+  ASSERT_TRUE(page.send_text(R"({"type": "undo", "id": "u", "base": 2})"));
+  page.until_judged(3);
+  EXPECT_EQ(run({"run", script_.string(), "--set", "steps=6"}), 0) << errors_;
+  ASSERT_TRUE(page.send_text(R"({"type": "list_runs", "id": "l"})"));
+  const Value::List folders = page.until_type("runs").at("folders").as_list();
+  ASSERT_EQ(folders.size(), 1u);
+  EXPECT_EQ(folders[0], Value("explore_city"));
+  const std::string open = R"({"type": "open_run", "id": "o", "folder": "explore_city"})";
+  ASSERT_TRUE(page.send_text(open));
+  const Value shown = page.until_type("run");
+  EXPECT_EQ(shown.at("exploration").at("images"), images);
+  EXPECT_EQ(shown.at("certificate").at("passed"), Value(true));
+  EXPECT_EQ(blob(address, shown.at("exploration").at("growth")).substr(0, 4), "WLG1");
+  const fs::path file = folder_ / "out/explore_city/episode.json";
+  std::string text = read_file(file);
+  const std::size_t version = text.find("\"lapwing ") + 9;
+  write_file_atomically(file, text.replace(version, text.find('"', version) - version, "0.0.1"));
+  ASSERT_TRUE(page.send_text(open));
+  const std::string why = page.until_type("failed").at("why").as_text();
+  EXPECT_NE(why.find("written by lapwing 0.0.1"), std::string::npos) << why;
+  EXPECT_NE(why.find("this is lapwing "), std::string::npos) << why;
+}
+
 // Many flights with errors: the first is that of its seed, and each has a way.
 TEST_F(StudioKinds, APlanIsFlownManyTimes) {
   use("racing/round_course.lua");

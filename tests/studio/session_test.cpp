@@ -901,5 +901,48 @@ TEST_F(Session, ADamagedLayerStaysAsItIs) {
   EXPECT_EQ(session_->document()->current().at("margin").as_number(), 1);
 }
 
+// Images of an exploration: told once the edit has its revision, also to a page that comes later,
+// and never of a solve that has ended.
+TEST_F(Session, ImagesAreToldInOrderAndPlanningCanWait) {
+  open("explore");
+  const auto a = page("a");
+  const auto taken = [&](const Frame& solve, int image) {
+    Frame frame;
+    frame.header.set("said", "image");
+    frame.header.set("serial", solve.header.at("serial"));
+    frame.parts = {"{\"image\":" + std::to_string(image) + "}", "WLV1"};
+    session_->heard(WorkerRole::solver, std::move(frame));
+  };
+  say(*a, gesture("g", 0, {change("margin", 3)}));
+  const Frame solving = solver_.frames.back();
+  taken(solving, 1);
+  EXPECT_TRUE(a->of_type("image").empty());  // it has no revision before it is checked
+  check_all();
+  ASSERT_EQ(a->of_type("image").size(), 1u);
+  EXPECT_EQ(a->last("image").at("revision"), Value(1));
+  EXPECT_TRUE(session_->blob(a->last("image").at("sights").as_text()));
+  say(*a, R"({"type": "pace", "pace": "pause"})");
+  EXPECT_EQ(a->last("pace").at("paused"), Value(true));
+  EXPECT_EQ(solver_.frames.back().header.at("do"), Value("pace"));
+  EXPECT_EQ(solver_.frames.back().header.at("paused"), Value(true));
+  say(*a, R"({"type": "pace", "pace": "step"})");
+  EXPECT_EQ(solver_.frames.back().header.at("step"), Value(true));
+  taken(solving, 2);
+  const auto b = page("b");
+  EXPECT_EQ(b->of_type("image").size(), 2u);
+  EXPECT_EQ(b->last("pace").at("paused"), Value(true));
+  // Nobody is left who could go on.
+  session_->closed(*a);
+  EXPECT_EQ(solver_.frames.back().header.at("step"), Value(true));
+  session_->closed(*b);
+  EXPECT_EQ(solver_.frames.back().header.at("paused"), Value(false));
+  solve(solving, "certified");
+  const auto c = page("c");
+  taken(solving, 3);
+  say(*c, R"({"type": "pace", "pace": "pause"})");
+  EXPECT_TRUE(c->of_type("image").empty());
+  EXPECT_TRUE(c->of_type("pace").empty());
+}
+
 }  // namespace
 }  // namespace lapwing

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { growthIn, grownBy, imagesBy, stepFrom, stepInWords } from "../src/state/exploration";
-import { addedStroke, drawnStrokes, earlierStroke, inWorld, litRuns, onPlane, planeOf,
+import { growthIn, grownBy, imagesBy, LiveEpisode, raysInWords, Sights, stepFrom, stepInWords } from "../src/state/exploration";
+import { addedStroke, drawingErrorInWords, drawnStrokes, earlierStroke, inWorld, lightsAndGaps, litRuns, onPlane, planeOf,
          reversedStroke, simplified, withoutStroke, type Point } from "../src/state/painting";
 import { applied } from "../src/state/document";
-import type { ExplorationWorld, JsonObject, Plan, Vec3 } from "../src/state/types";
+import type { Certificate, ExplorationWorld, JsonObject, Plan, TakenImage, Vec3 } from "../src/state/types";
 
 const painting = (more: JsonObject = {}): JsonObject =>
   ({ text: "HELLO", strokes: [], height: 2, base: [1, 5, 2], view_yaw_deg: 90, ...more });
@@ -139,4 +139,68 @@ test("voxels grow image by image; bytes that hold none are refused", () => {
   assert.deepEqual([0, 1, 6, 7, 8].map((n) => grownBy(growth, n)), [0, 2, 2, 3, 3]);
   assert.throws(() => growthIn(bytes.slice(0, 40)), /growth/);
   assert.throws(() => growthIn(new ArrayBuffer(3)), /growth/);
+});
+
+// Two images, slices of 2 x 2 points at two levels, one ray.
+function sightBytes(): ArrayBuffer {
+  const bytes = new ArrayBuffer(20 + 8 + 2 * (2 * 2 * 4 + 20));
+  const data = new DataView(bytes);
+  [..."WLV1"].forEach((letter, i) => data.setUint8(i, letter.charCodeAt(0)));
+  [2, 2, 2, 1].forEach((count, i) => data.setUint32(4 + 4 * i, count, true));
+  [1.5, 3].forEach((edge, i) => data.setFloat32(20 + 4 * i, edge, true));
+  for (let image = 0; image < 2; ++image) {
+    const at = 28 + 36 * image;
+    for (let i = 0; i < 16; ++i) data.setUint8(at + i, 100 * image + i);
+    [1, 2, 3, 0.25].forEach((v, i) => data.setFloat32(at + 16 + 4 * i, v, true));
+    data.setUint32(at + 32, 7 * image, true);
+  }
+  return bytes;
+}
+
+test("what an image was chosen by is read from its bytes", () => {
+  const sights = new Sights(sightBytes());
+  const second = sights.at(1);
+  assert.ok(second);
+  assert.deepEqual([...second.edges], [1.5, 3]);
+  assert.deepEqual([...(second.occupancy[1] as Uint8Array)], [104, 105, 106, 107]);
+  assert.deepEqual([...(second.certainty[0] as Uint8Array)], [108, 109, 110, 111]);
+  assert.deepEqual(second.rays, [{ end: [1, 2, 3], unknownFrom: 0.25, unknown: 7 }]);
+  assert.equal(raysInWords(second), "1 of 1 rays met unknown voxels");
+  assert.equal(sights.at(2), null);
+  assert.equal(sights.at(-1), null);
+  assert.throws(() => new Sights(sightBytes().slice(1)), /no views/);
+  assert.throws(() => new Sights(new ArrayBuffer(0)), /no views/);
+});
+
+test("an exploration grows while it is planned", () => {
+  const image = (n: number, grown: number[]): TakenImage => ({
+    type: "image", revision: 3, utility: "frontier", image: n, asked: 9, surface: 50, resolution: 0.4,
+    time: 2 * n, position: [n, 0, 2], yaw: 0, pitch: 0, value: n, scored: 1, observed: n === 2 ? null : 5,
+    grown, sights: `blob${n}` });
+  const live = new LiveEpisode(3);
+  assert.ok(!live.take(image(2, [])));         // the first one is missing
+  assert.ok(live.take(image(1, [1, 2, 3])));
+  assert.ok(live.take(image(2, [4, 5, 6, 7, 8, 9])));
+  assert.ok(!live.take(image(2, [])));         // told twice
+  assert.deepEqual([...live.growth.images], [1, 2, 2]);
+  assert.equal(grownBy(live.growth, 1), 1);
+  assert.equal(live.plan.duration, 4);
+  assert.deepEqual(live.plan.columns.x, [1, 2]);
+  const rows = Object.fromEntries(stepInWords(live.told, 2, live.asked));
+  assert.equal(rows.Image, "2 of 9");
+  assert.equal(rows["Surface found"], undefined);   // known at the end
+});
+
+test("light and dark are in the order of the plan, its error in words", () => {
+  const plan: Plan = { duration: 9, columns: { time: [] },
+                       lights: [{ start: 0, finish: 2 }, { start: 3, finish: 5 }] };
+  assert.deepEqual(lightsAndGaps(plan).map(({ start, finish, lit }) => [start, finish, lit]),
+                   [[0, 2, true], [2, 3, false], [3, 5, true]]);
+  assert.deepEqual(lightsAndGaps(null), []);
+  const certificate: Certificate = { passed: true, checks: [
+    { name: "drawing", passed: true, required: true, worst: 0.001, limit: 0.02 },
+    { name: "drawing_flown", passed: true, required: true, worst: 0.0035, limit: 0.02 }] };
+  assert.equal(drawingErrorInWords(certificate),
+               "The light is 1 mm from the strokes on average as planned, 3.5 mm as flown; at most 20 mm.");
+  assert.equal(drawingErrorInWords(null), "");
 });
