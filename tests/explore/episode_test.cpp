@@ -479,7 +479,9 @@ TEST(Episode, ChoicesAreToldBeforeTheirImages) {
     EXPECT_EQ(chosen[k].position, told.steps[k].view.position);
     EXPECT_EQ(told.steps[k].view.position, untold.steps[k].view.position);
     EXPECT_LE(before[k], after[k]);
-    if (k > 0) EXPECT_EQ(before[k], after[k - 1]);
+    if (k > 0) {
+      EXPECT_EQ(before[k], after[k - 1]);
+    }
   }
   EXPECT_LT(before.front(), after.front());
 }
