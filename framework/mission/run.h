@@ -33,6 +33,7 @@ struct ScriptTerm;  // script_terms.h
 
 struct ExplorationRecord;  // export/exploration_report.h
 struct ScanRecord;         // export/scan_report.h
+struct KeptTour;           // scan_look.h
 struct ScanWork;           // scan_objects.h
 struct TourDefinition;
 class MeshScene;
@@ -58,6 +59,7 @@ struct MissionSettings {
   const CancellationToken* cancellation = nullptr;
   Progress* progress = nullptr;
   bool record_growth = false;  // of explorations: when each voxel became occupied, for a viewer
+  bool keep_tours = false;     // of scans: what each tour was chosen from, for a viewer
   std::function<void(const std::string&)> print = [](const std::string&) {};
   // Hears of the script and of every module that it requires before they are read; may be null.
   std::function<void(const std::filesystem::path&)> observe_script;
@@ -125,6 +127,7 @@ struct PlanObject {
   std::vector<Section> sections = {};
   std::function<std::vector<Section>(const Plan&)> late_sections = {};
   std::shared_ptr<const ScanRecord> scan = {};                // of a scan: what it was planned on
+  std::shared_ptr<const KeptTour> kept = {};                  // of a scan, where it is asked for
   std::shared_ptr<const ExplorationRecord> exploration = {};  // of an exploration: how it went
 };
 

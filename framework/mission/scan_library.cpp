@@ -160,7 +160,8 @@ int solve_tour_of_run(lua_State* state) {
     if (result.report.status == TourStatus::failed) throw PluginError(result.report.message);
     tour.report = result.report;
     tour.walk = std::move(result.walk);
-    take_out_pinned(work, {tour.walk}, problem.reachable(), tour.report);
+    tour.reachable = problem.reachable();
+    take_out_pinned(work, {tour.walk}, tour.reachable, tour.report);
   }
   run.solve_seconds += tour.report.wall_seconds;
   logging::info(

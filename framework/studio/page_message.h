@@ -26,6 +26,10 @@ enum class PageMessageType {
   export_lua,
   race,
   stick,
+  voxel,
+  slice,
+  left_out,
+  view,
 };
 const char* to_string(PageMessageType type);
 
@@ -53,7 +57,11 @@ struct PageMessage {
   bool uncertified = false;
   Value players = Value::list();                   // race: names and numbers of each
   std::vector<std::array<double, 2>> sticks = {};  // of stick: forward and left, -1 to 1
-  std::size_t bytes = 0;                           // of its text
+  std::vector<double> at = {};  // voxel: a place, or where a ray begins and whither; slice: m
+  int axis = 2;                 // of slice: 0 is x
+  bool of_tour = false;         // view: `view` is an image of `tour`, else a candidate
+  std::size_t view = 0;         // from 0
+  std::size_t bytes = 0;        // of its text
 };
 
 // Of a picture, each way.

@@ -20,6 +20,7 @@
 #include "framework/studio/plan_message.h"
 #include "framework/studio/worker_errands.h"
 #include "framework/studio/worker_link.h"
+#include "framework/studio/worker_looks.h"
 #include "framework/studio/worker_progress.h"
 #include "framework/trajectory/interpolate.h"
 
@@ -67,7 +68,9 @@ class StudioWorker {
         judge_fleet_(std::move(judge_fleet)),
         errands_(script, settings_),
         editor_(
-            script, settings_, [this](const EditedPlan& edited) { hear(edited); }, judge_) {}
+            script, settings_, [this](const EditedPlan& edited) { hear(edited); }, judge_),
+        looks_([this](Frame frame, std::int64_t serial) { send(std::move(frame), serial); },
+               settings.threads) {}
 
   void run() {
     std::thread reader([this] { read(); });
@@ -90,6 +93,7 @@ class StudioWorker {
 
   void take(Frame frame) {
     const std::string what = frame.header.at("do").as_text();
+    if (WorkerLooks::answers(what)) return looks_.ask(std::move(frame));
     const std::lock_guard lock(mutex_);
     if (what == "solve" || what == "drop") {
       end_solve();
@@ -185,6 +189,7 @@ class StudioWorker {
 
   void send(Frame answer, std::int64_t serial) {
     answer.header.set("serial", serial);
+    const std::lock_guard lock(sending_);
     if (!write_frame(kWorkerOutput, answer)) ::_exit(0);  // nobody is left to tell
   }
 
@@ -252,6 +257,7 @@ class StudioWorker {
     WorkerProgress progress([this](Frame told) { send(std::move(told), serial_); });
     settings.progress = &progress;
     settings.record_growth = true;
+    settings.keep_tours = true;
     settings.scan_memory = scan_memory();
     // Modules that are required while it plans, as scenes are.
     settings.observe_script = [this](const std::filesystem::path& file) {
@@ -265,6 +271,7 @@ class StudioWorker {
     if (result.mapping)
       throw InputError("a mission of kind '" + mission->kind() +
                        "' makes a map and no flight that could be drawn; lapwing run plans it");
+    keep_tours(result);
     if (result.fleet) {
       keep(mission);
       return judge_tours(result);
@@ -379,6 +386,15 @@ class StudioWorker {
     if (planned_.size() > kMostKept) planned_.pop_front();
   }
 
+  // What pages may ask about.
+  void keep_tours(const MissionResult& result) {
+    std::vector<KeptTour> tours;
+    if (result.kept) tours.push_back(*result.kept);
+    for (std::size_t t = 0; result.fleet && t < result.fleet->tours.size(); ++t)
+      if (const auto& kept = result.fleet->tours[t].kept) tours.push_back(*kept);
+    if (!tours.empty()) looks_.keep(result.obstacle_folder.string(), std::move(tours));
+  }
+
   void hear(const EditedPlan& edited) {
     if (edited.answer.grade == AnswerGrade::refused) {
       refused_ = edited.answer.message;
@@ -453,6 +469,9 @@ class StudioWorker {
   std::int64_t serial_ = 0;                   // of the solve under way
   std::shared_ptr<CancellationToken> whole_;  // likewise, where it is planned whole
   bool ended_ = false;
+
+  std::mutex sending_;  // of frames to the server
+  WorkerLooks looks_;
 };
 
 }  // namespace

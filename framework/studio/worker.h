@@ -17,6 +17,8 @@
 //   fly {conditions}         done {...} [samples]        of the plan document in the first part
 //   picture, export, export_lua, save_report             done {...}, or failed {why}
 //   race, stick              done {files} [state]        a race that is flown by hand
+//   voxel, slice, left_out, view {folder}   done {blobs} [members of the answer, blobs], or failed;
+//                            also while a plan is solved (worker_looks.h)
 #pragma once
 
 #include <filesystem>

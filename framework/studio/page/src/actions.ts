@@ -33,6 +33,7 @@ export interface Parts {
   frame(): void;
   keyframeHere(): void;
   clickMiddle(): void;
+  dropLook(): boolean;
   showFilmTab(): void;
 }
 
@@ -219,7 +220,7 @@ export class Actions {
     if (this.moves.drop()) return true;
     if (studio.session.dragging) studio.session.rest();
     else if (studio.mode !== "orbit") studio.setMode("orbit");
-    else studio.select(null);
+    else if (studio.selection || !this.parts.dropLook()) studio.select(null);
     return true;
   }
 

@@ -34,8 +34,9 @@ export class Studio {
   map = false;                 // the world from straight above
   outlined: PolygonKind = "region";    // what a drag draws in the mode `outline`
   // Of a scan: what is drawn, and the figure whose colours the surface has.
-  readonly look: { figure: Figure; views: boolean; candidates: boolean; first: boolean } =
-    { figure: "accuracy_mm", views: true, candidates: false, first: false };
+  readonly look: { figure: Figure; views: boolean; candidates: boolean; first: boolean;
+                   leftOut: boolean } =
+    { figure: "accuracy_mm", views: true, candidates: false, first: false, leftOut: false };
   flown: Flown | null = null;
   kept: (Version & { grade: Grade }) | null = null;   // to be compared with
   private readonly listeners: { topics: Topic[]; then: (topic: Topic) => void }[] = [];

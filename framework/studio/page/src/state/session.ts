@@ -306,6 +306,10 @@ export class Session {
       case "estimate":
         if (message.tab !== this.parts.tab || message.edit !== this.drag?.edit) return;
         return this.tell({ what: "estimate", message });
+      case "voxel":
+      case "slice":
+      case "left_out":
+      case "view": return this.tell({ what: "look", message });
       case "raced": return this.tell({ what: "raced", message });
       case "worker": return this.tell({ what: "worker", message });
       case "remark": return this.tell({ what: "note", text: message.message });

@@ -161,7 +161,7 @@ export class Pick {
   }
 
   // A click on nothing that can be selected.
-  onNothing: (ray: THREE.Ray) => void = () => undefined;
+  onNothing: (ray: THREE.Ray, at: { clientX: number; clientY: number }) => void = () => undefined;
   // A click of a race places a gate.
   onGate: ((at: Vec3) => void) | null = null;
 
@@ -174,7 +174,7 @@ export class Pick {
     // Only what the document has can be selected.
     const listed = solid !== null && solid.index < entries(studio.document, "obstacles").length;
     studio.select(listed ? { kind: "obstacle", index: solid.index } : null);
-    if (!listed) this.onNothing(this.stage.rayAt(event.clientX, event.clientY));
+    if (!listed) this.onNothing(this.stage.rayAt(event.clientX, event.clientY), event);
   }
 
   // The same without a mouse: the middle of the view is meant.

@@ -72,6 +72,16 @@ export class ScanView {
     return box;
   }
 
+  // What is cut away of the surface; null: nothing.
+  cutBy(plane: THREE.Plane | null): void {
+    const { material } = this.surface;
+    const had = material.clippingPlanes?.[0] ?? null;
+    if (had === plane || (had && plane && had.equals(plane))) return;
+    const anew = (had === null) !== (plane === null);
+    material.clippingPlanes = plane ? [plane] : null;
+    if (anew) material.needsUpdate = true;
+  }
+
   // The nearest triangle of the surface on a ray, in words.
   wordsAt(ray: THREE.Ray): string | null {
     if (!this.prediction || !this.surface.visible) return null;
