@@ -45,17 +45,14 @@ int rank_of(CellState state) {
 void lay_out(const VoxelBox& bounds, std::size_t most_cells, MapSlice& slice) {
   const int low[2] = {bounds.lower[slice.across()], bounds.lower[slice.up()]};
   const int high[2] = {bounds.upper[slice.across()], bounds.upper[slice.up()]};
-  const auto cells = [&](int i) {
-    return (high[i] >> slice.level) - (low[i] >> slice.level) + 1;
-  };
+  const auto cells = [&](int i) { return (high[i] >> slice.level) - (low[i] >> slice.level) + 1; };
   while (static_cast<std::size_t>(cells(0)) * static_cast<std::size_t>(cells(1)) > most_cells &&
          slice.level < kTreeDepth)
     ++slice.level;
   slice.columns = cells(0);
   slice.rows = cells(1);
   for (std::size_t i = 0; i < 2; ++i) slice.first[i] = low[i] >> slice.level << slice.level;
-  const auto count =
-      static_cast<std::size_t>(slice.columns) * static_cast<std::size_t>(slice.rows);
+  const auto count = static_cast<std::size_t>(slice.columns) * static_cast<std::size_t>(slice.rows);
   slice.states.assign(count, CellState::unknown);
   slice.log_odds.assign(count, 0);
 }
@@ -77,9 +74,8 @@ void add_leaf(const VoxelLeaf& leaf, CellState state, MapSlice& slice) {
   for (int row = first_cell(slice.up(), 1); row <= last_cell(slice.up(), 1); ++row)
     for (int column = first_cell(slice.across(), 0); column <= last_cell(slice.across(), 0);
          ++column) {
-      const auto place =
-          static_cast<std::size_t>(row) * static_cast<std::size_t>(slice.columns) +
-          static_cast<std::size_t>(column);
+      const auto place = static_cast<std::size_t>(row) * static_cast<std::size_t>(slice.columns) +
+                         static_cast<std::size_t>(column);
       CellState& had = slice.states[place];
       float& odds = slice.log_odds[place];
       odds = had == CellState::unknown ? leaf.log_odds : std::max(odds, leaf.log_odds);
@@ -109,8 +105,8 @@ MapSlice slice_of(const Map& map, int axis, double at, std::size_t most_cells) {
   const auto voxels = [&](int along) {
     return static_cast<std::uint64_t>(bounds->upper[along] - bounds->lower[along] + 1);
   };
-  slice.unknown = voxels(slice.across()) * voxels(slice.up()) - slice.free - slice.occupied -
-                  slice.between;
+  slice.unknown =
+      voxels(slice.across()) * voxels(slice.up()) - slice.free - slice.occupied - slice.between;
   return slice;
 }
 

@@ -98,15 +98,14 @@ Frame voxel_answer(const Frame& question, const std::vector<KeptTour>& tours, in
   const VoxelKey key = asked_voxel(question, map);
   const VoxelLook look = look_at_voxel(tours, key, threads);
   Value value = Value::map();
-  value.set("key", Value(Value::List{std::int64_t{key.x}, std::int64_t{key.y},
-                                     std::int64_t{key.z}}));
+  value.set("key",
+            Value(Value::List{std::int64_t{key.x}, std::int64_t{key.y}, std::int64_t{key.z}}));
   value.set("middle", list_of(map.grid().center(key)));
   value.set("edge", map.grid().resolution());
   value.set("state", name_of(look.reading));
   value.set("log_odds", static_cast<double>(look.reading.log_odds));
-  value.set("observations", map.settings().observations
-                                ? Value(std::int64_t{look.reading.observations})
-                                : Value());
+  value.set("observations",
+            map.settings().observations ? Value(std::int64_t{look.reading.observations}) : Value());
   value.set("weight", look.weight);
   value.set("share", static_cast<double>(look.share));
   Value& images = value.set("images", Value::list());
@@ -117,8 +116,7 @@ Frame voxel_answer(const Frame& question, const std::vector<KeptTour>& tours, in
     one.set("distance", static_cast<double>(image.sight.distance));
     one.set("pixels", static_cast<double>(image.sight.pixels));
     one.set("mm_per_pixel", 1000 * map.grid().resolution() / image.sight.pixels);
-    if (image.sight.incidence)
-      one.set("incidence_deg", degrees(*image.sight.incidence));
+    if (image.sight.incidence) one.set("incidence_deg", degrees(*image.sight.incidence));
     one.set("told", static_cast<double>(image.told));
     images.push_back(std::move(one));
   }
@@ -132,8 +130,8 @@ std::string bytes_of_slice(const MapSlice& slice, const MapSettings& settings) {
   std::string bytes = head.take();
   const float low = settings.clamp_min, wide = settings.clamp_max - settings.clamp_min;
   for (const float odds : slice.log_odds)
-    bytes += static_cast<char>(static_cast<std::uint8_t>(
-        std::lround(255 * std::clamp((odds - low) / wide, 0.0f, 1.0f))));
+    bytes += static_cast<char>(
+        static_cast<std::uint8_t>(std::lround(255 * std::clamp((odds - low) / wide, 0.0f, 1.0f))));
   for (const CellState state : slice.states) bytes += static_cast<char>(state);
   return bytes;
 }

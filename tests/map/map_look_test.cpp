@@ -88,8 +88,7 @@ TEST(MapLook, ALargeSliceHasLargerCells) {
   EXPECT_EQ(coarse.unknown, fine.unknown);
   for (int row = 0; row < fine.rows; ++row)
     for (int column = 0; column < fine.columns; ++column) {
-      if (fine.states[static_cast<std::size_t>(row * fine.columns + column)] !=
-          CellState::occupied)
+      if (fine.states[static_cast<std::size_t>(row * fine.columns + column)] != CellState::occupied)
         continue;
       const VoxelKey key = cell_voxel(fine, column, row);
       const int x = (key.x - coarse.first[0]) >> coarse.level;

@@ -82,9 +82,9 @@ TEST_F(ScanLook, AVoxelIsSeenAsTheReportCountsIt) {
   const auto& views = result.plan.task.scan->views;
   ASSERT_EQ(tour.images.size(), views.size());
   for (std::size_t k = 0; k < views.size(); ++k)
-    EXPECT_EQ(tour.work->graph.candidates.viewpoints[static_cast<std::size_t>(tour.images[k])]
-                  .position,
-              views[k].position);
+    EXPECT_EQ(
+        tour.work->graph.candidates.viewpoints[static_cast<std::size_t>(tour.images[k])].position,
+        views[k].position);
   std::size_t seen = 0, counted = 0;
   for (const VoxelShare& voxel : result.scan->coverage) {
     const VoxelLook look = look_at_voxel({&tour, 1}, voxel.voxel, 2);
@@ -95,10 +95,10 @@ TEST_F(ScanLook, AVoxelIsSeenAsTheReportCountsIt) {
     seen += look.images.size();
     counted += look.reading.observations > 0;
     for (const ImageOfVoxel& image : look.images)
-      EXPECT_NEAR(image.sight.distance,
-                  (views[image.image].position - result.scan->map->grid().center(voxel.voxel))
-                      .norm(),
-                  1e-4);
+      EXPECT_NEAR(
+          image.sight.distance,
+          (views[image.image].position - result.scan->map->grid().center(voxel.voxel)).norm(),
+          1e-4);
   }
   EXPECT_GT(seen, result.scan->coverage.size() / 4);
   EXPECT_GT(counted, 100u);

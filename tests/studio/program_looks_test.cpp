@@ -13,16 +13,12 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::vector<std::string> kOptions{"--config",
-                                        "scan/small",
-                                        "--set",
-                                        "resolution=1",
-                                        "--set",
-                                        "tour.budget=90",
-                                        "--set",
-                                        "map={type: brick, observations: true}",
-                                        "--set",
-                                        "forbidden=[{position: [0, 25, 30], within: 15}]"};
+const std::vector<std::string> kOptions{
+    "--config", "scan/small",
+    "--set",    "resolution=1",
+    "--set",    "tour.budget=90",
+    "--set",    "map={type: brick, observations: true}",
+    "--set",    "forbidden=[{position: [0, 25, 30], within: 15}]"};
 
 class StudioLooks : public StudioKinds {
  protected:
@@ -36,9 +32,7 @@ class StudioLooks : public StudioKinds {
   }
   Value ask(const std::string& members) {
     page_->send_text("{\"id\": \"q\", " + members + "}");
-    return page_->until([](const Value& m) {
-      return m.find("id") && m.at("id") == Value("q");
-    });
+    return page_->until([](const Value& m) { return m.find("id") && m.at("id") == Value("q"); });
   }
   std::string why(const std::string& members) {
     const Value answer = ask(members);
@@ -56,8 +50,7 @@ class StudioLooks : public StudioKinds {
     for (const VoxelLeaf& leaf : map_.leaves) {
       const int size = 1 << leaf.level;
       bool in = true;
-      for (int i = 0; i < 3; ++i)
-        in = in && key[i] >= leaf.key[i] && key[i] < leaf.key[i] + size;
+      for (int i = 0; i < 3; ++i) in = in && key[i] >= leaf.key[i] && key[i] < leaf.key[i] + size;
       if (in) return leaf.log_odds;
     }
     return std::nullopt;
@@ -96,9 +89,9 @@ class StudioLooks : public StudioKinds {
 void StudioLooks::ask_voxels() {
   const Value::List& views = world_.at("scan").at("views").as_list();
   std::size_t images = 0;
-  for (const char* ray : {"[0, 0, 200, 0, 0, -1]", "[-3, 6, 150, 0, 0.01, -1]",
-                          "[90, 80, 60, -0.9, -0.8, -0.5]", "[4, -60, 10, 0, 1, -0.05]",
-                          "[0, 70, 60, 0, -0.9, -0.5]", "[-60, 0, 60, 0.8, 0, -0.6]"}) {
+  for (const char* ray :
+       {"[0, 0, 200, 0, 0, -1]", "[-3, 6, 150, 0, 0.01, -1]", "[90, 80, 60, -0.9, -0.8, -0.5]",
+        "[4, -60, 10, 0, 1, -0.05]", "[0, 70, 60, 0, -0.9, -0.5]", "[-60, 0, 60, 0.8, 0, -0.6]"}) {
     const Value voxel = ask(std::string(R"("type": "voxel", "ray": )") + ray);
     ASSERT_EQ(voxel.at("type"), Value("voxel")) << to_json(voxel);
     EXPECT_EQ(voxel.at("state"), Value("occupied"));
@@ -114,14 +107,12 @@ void StudioLooks::ask_voxels() {
       ASSERT_LE(number, views.size());
       double squares = 0;
       for (std::size_t i = 0; i < 3; ++i)
-        squares += std::pow(views[number - 1].at("position").as_list()[i].as_number() -
-                                middle[i].as_number(),
-                            2);
+        squares += std::pow(
+            views[number - 1].at("position").as_list()[i].as_number() - middle[i].as_number(), 2);
       EXPECT_NEAR(image.at("distance").as_number(), std::sqrt(squares), 1e-4);
-      EXPECT_NEAR(image.at("mm_per_pixel").as_number(),
-                  1000 * std::sqrt(squares) /
-                      world_.at("scan").at("image").as_list()[2].as_number(),
-                  1e-3);
+      EXPECT_NEAR(
+          image.at("mm_per_pixel").as_number(),
+          1000 * std::sqrt(squares) / world_.at("scan").at("image").as_list()[2].as_number(), 1e-3);
       sum += image.at("told").as_number();
       ++images;
     }
@@ -212,8 +203,7 @@ void StudioLooks::ask_left_out() {
       by_name["nothing"] + by_name["apart"] + by_name["budget"] + by_name["not_chosen"];
   const std::int64_t all =
       static_cast<std::int64_t>(world_.at("scan").at("candidates").as_list().size());
-  EXPECT_EQ(candidates +
-                static_cast<std::int64_t>(world_.at("scan").at("views").as_list().size()),
+  EXPECT_EQ(candidates + static_cast<std::int64_t>(world_.at("scan").at("views").as_list().size()),
             all);
 }
 

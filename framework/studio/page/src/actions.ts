@@ -3,6 +3,7 @@
 import { isPainting } from "./state/painting";
 import { cutAt, moved, placeOfItem, retimed } from "./state/edits";
 import { actionOf } from "./state/keys";
+import { isSite } from "./state/site";
 import type { Vec3 } from "./state/types";
 import type { Rate, Studio } from "./studio";
 import { byId, forgetColours, typing } from "./view/dom";
@@ -177,7 +178,8 @@ export class Actions {
         else parts.notices.say("Select a keyframe first.");
         return true;
       case "type":
-        if (studio.mode === "place" || studio.mode === "aim") {
+        if (studio.mode === "place" || studio.mode === "aim" ||
+            (!studio.selection && studio.mode === "orbit" && isSite(studio.document))) {
           parts.clickMiddle();
           return true;
         }

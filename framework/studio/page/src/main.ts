@@ -112,7 +112,10 @@ new Paths(studio, stage);
 new Gates(studio, stage);
 const scanned = new ScanView(studio, stage);
 const looks = new LooksView(studio, stage);
-looks.onCut = (plane) => scanned.cutBy(plane);
+looks.onCut = (plane) => {
+  scanned.cutBy(plane);
+  solids.cutBy(plane);
+};
 const explored = new ExplorationView(studio, stage);
 new PaintingView(studio, stage);
 new Pins(studio, stage, byId("pins"));
@@ -160,9 +163,10 @@ pick.onGate = (at) => list.addGate(at);
 const scan = new ScanPanel(studio, centre);
 scan.onPlace = (place) => navigation.lookAt(place);
 new LooksPanel(studio, looks);
+pick.isView = ({ clientX, clientY }) => looks.viewAt(clientX, clientY) !== null;
 pick.onNothing = (ray, at) => {
   const view = looks.viewAt(at.clientX, at.clientY);
-  if (view) return looks.askView(view, true);
+  if (view) return looks.choose(view);
   // On a slice its own voxel is meant, not the surface behind it.
   const words = looks.askVoxel(ray) ? null : scanned.wordsAt(ray);
   if (words) notices.say(words);
@@ -330,7 +334,7 @@ Object.defineProperty(window, "lapwing", {
     get grown() { return explored.count; },
     get looks() {
       const { slice, voxel, view, leftOut } = looks;
-      return { slice, voxel, view, leftOut };
+      return { slice, voxel, view, leftOut, drawnPlaces: looks.drawnPlaces };
     },
     // Where a place of the world is on the page.
     pageOf(place: Vec3) {

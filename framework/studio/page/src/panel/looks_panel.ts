@@ -89,7 +89,8 @@ export class LooksPanel {
       slice.level > 0 ? `, cells of ${show(slice.edge * 2 ** slice.level)} m` : ""}`;
     refill(byId("slice-legend"), ...cellStates.map((state) => {
       const odds = state === "free" ? 255 - SURE : SURE;
-      return swatch(cellColour(state, odds), stateNames[state], slice.counts[state], state);
+      return el("li", { "data-key": state },
+                ...swatch(cellColour(state, odds), stateNames[state], slice.counts[state]));
     }));
   }
 
@@ -107,7 +108,11 @@ export class LooksPanel {
   private showLeftOut(): void {
     const { leftOut } = this.looks;
     refill(byId("left-out-legend"), ...(leftOut ? reasonsOf(leftOut) : []).map(({ reason, count }) =>
-      swatch(reasonColours[reason], reasonNames[reason], count, reason)),
+      el("li", { "data-key": reason }, el("button", {
+        type: "button", class: "swatch", "data-key": `reason-${reason}`,
+        "aria-pressed": String(this.looks.draws(reason)), title: "Draw them, or not",
+        onclick: () => this.looks.toggle(reason),
+      }, ...swatch(reasonColours[reason], reasonNames[reason], count)))),
     leftOut !== null && leftOut.beyond > 0 &&
       el("li", {}, `and ${leftOut.beyond} places that are not listed`));
   }
@@ -123,9 +128,8 @@ export class LooksPanel {
   }
 }
 
-function swatch([r, g, b]: readonly number[], name: string, count: number, key: string): HTMLElement {
+function swatch([r, g, b]: readonly number[], name: string, count: number): HTMLElement[] {
   const mark = el("i");
   mark.style.background = `rgb(${r} ${g} ${b})`;
-  return el("li", { "data-key": key }, mark, el("span", { class: "what" }, name),
-            el("span", { class: "when" }, String(count)));
+  return [mark, el("span", { class: "what" }, name), el("span", { class: "when" }, String(count))];
 }

@@ -178,6 +178,6 @@ export const reasonsOf = (answer: LeftOutAnswer): { reason: LeftOutReason; count
 export function viewInWords(view: ViewAnswer): string {
   return `Candidate ${view.candidate + 1}: ${view.position.map((v) => show(v)).join(", ")} m, heading ${
     show((view.yaw * 180) / Math.PI)}\u00b0, pitch ${show((view.pitch * 180) / Math.PI)}\u00b0. Tells of ${
-    view.voxels} voxels, ${three(view.score)} by itself. ${view.ways.length} motions${
+    view.voxels} voxels, ${three(view.score)} by itself. ${view.ways.length} motion${view.ways.length === 1 ? "" : "s"}${
     view.ways.length > 0 ? `, the shortest ${three(Math.min(...view.ways.map((w) => w.seconds)))} s` : ""}.`;
 }

@@ -2,11 +2,11 @@
 // A look into a planned scan: a slice of its map, places that were left out, a voxel that was clicked
 // at, and the view under the mouse with its motions, its rays and the voxels that it tells of.
 import * as THREE from "three";
-import { axisNumber, placesIn, reasonColours, sliceAxes, sliceCorners, sliceHit, texelsIn, toldIn,
-         type Axis, type Told } from "../state/looks";
+import { axisNumber, placesIn, reasonColours, sliceCorners, sliceHit, texelsIn, toldIn,
+         type Axis, type Places, type Told } from "../state/looks";
 import { viewAtTime, viewsOf } from "../state/site";
 import { colourOf } from "../state/prediction";
-import type { LeftOutAnswer, ScanWorld, ServerMessage, SliceAnswer, Vec3, ViewAnswer, VoxelAnswer }
+import type { LeftOutAnswer, LeftOutReason, ScanWorld, ServerMessage, SliceAnswer, Vec3, ViewAnswer, VoxelAnswer }
   from "../state/types";
 import type { Studio } from "../studio";
 import { Ribbon } from "./ribbon";
@@ -15,6 +15,7 @@ import type { Stage } from "./stage";
 const NEAR = 9;            // px from a view
 const STILL = 120;         // ms, before the view under the mouse is asked about
 const MOST_RAYS = 400;     // drawn
+const SPOT = 7;            // px, of the voxel that was clicked at
 const DOT = 5;             // px, of a place that was left out
 
 // A view by its number among the candidates, or among the images of the tour that is shown.
@@ -25,6 +26,9 @@ export class LooksView {
   voxel: VoxelAnswer | null = null;
   view: ViewAnswer | null = null;
   leftOut: LeftOutAnswer | null = null;
+  private left: Places | null = null;
+  // Of these there are so many that they would cover the others.
+  private readonly hidden = new Set<LeftOutReason>(["outside", "thinned"]);
   private readonly asked = new Map<string, string>();     // the newest question of each type
   private wanted: { axis: Axis; at: number } | null = null;
   private waiting = false;                                // for a slice
@@ -43,14 +47,18 @@ export class LooksView {
   private readonly cube = new THREE.LineSegments(
     new THREE.EdgesGeometry(new THREE.BoxGeometry(1, 1, 1)),
     new THREE.LineBasicMaterial({ depthTest: false, transparent: true }));
-  private readonly ways = new Ribbon("solid", 3);
+  // So that a small one is seen from far away.
+  private readonly spot = new THREE.Points(
+    new THREE.BufferGeometry().setAttribute("position", new THREE.BufferAttribute(new Float32Array(3), 3)),
+    new THREE.PointsMaterial({ size: SPOT, sizeAttenuation: false, depthTest: false, transparent: true }));
+  private readonly ways = new Ribbon("thin", 3);
   // Something of it has changed.
   onChange: () => void = () => undefined;
   // What is cut away before a slice; null: nothing.
   onCut: (cut: THREE.Plane | null) => void = () => undefined;
 
   constructor(private readonly studio: Studio, private readonly stage: Stage) {
-    for (const object of [this.plane, this.places, this.told, this.rays, this.cube]) {
+    for (const object of [this.plane, this.places, this.told, this.rays, this.cube, this.spot]) {
       object.frustumCulled = false;
       object.visible = false;
       object.renderOrder = 2;
@@ -81,6 +89,7 @@ export class LooksView {
     this.ways.paint(this.stage.palette.chosen);
     this.rays.material.color.set(this.stage.palette.chosen);
     this.cube.material.color.set(this.stage.palette.chosen);
+    this.spot.material.color.set(this.stage.palette.chosen);
     this.stage.invalidate();
   }
 
@@ -133,6 +142,16 @@ export class LooksView {
     else this.hideView();
   }
 
+  // A click on a view: it stays, and of an image the play head goes there.
+  choose(view: Looked): void {
+    if ("image" in view) {
+      const time = viewsOf(this.scan, view.tour)[view.image]?.time;
+      this.studio.play(false);
+      if (time !== undefined) this.studio.seek(time);
+    }
+    this.askView(view, true);
+  }
+
   // The view at the play head.
   askViewNow(): void {
     const { tour } = this.studio.which;
@@ -144,7 +163,7 @@ export class LooksView {
   drop(): boolean {
     if (!this.view && !this.voxel) return false;
     this.voxel = null;
-    this.cube.visible = false;
+    this.cube.visible = this.spot.visible = false;
     this.hideView();
     return true;
   }
@@ -164,7 +183,7 @@ export class LooksView {
     this.voxel = this.slice = this.leftOut = null;
     this.waiting = false;
     this.asked.clear();
-    this.cube.visible = this.plane.visible = this.places.visible = false;
+    this.cube.visible = this.spot.visible = this.plane.visible = this.places.visible = false;
     this.hideView();
   }
 
@@ -210,7 +229,8 @@ export class LooksView {
     this.voxel = voxel;
     this.cube.position.set(...voxel.middle);
     this.cube.scale.setScalar(1.02 * voxel.edge);
-    this.cube.visible = true;
+    this.spot.position.set(...voxel.middle);
+    this.cube.visible = this.spot.visible = true;
     this.changed();
   }
 
@@ -242,19 +262,42 @@ export class LooksView {
 
   private showPlaces(answer: LeftOutAnswer, buffer: ArrayBuffer): void {
     if (!this.studio.look.leftOut) return;
-    const { positions, numbers } = placesIn(buffer);
-    const colours = new Uint8Array(positions.length);
-    numbers.forEach((number, k) => {
-      const reason = answer.reasons[number]?.reason;
-      if (reason) colours.set(reasonColours[reason], 3 * k);
+    this.leftOut = answer;
+    this.left = placesIn(buffer);
+    this.drawPlaces();
+  }
+
+  // Whether the places of a reason are drawn.
+  draws(reason: LeftOutReason): boolean {
+    return !this.hidden.has(reason);
+  }
+
+  toggle(reason: LeftOutReason): void {
+    if (!this.hidden.delete(reason)) this.hidden.add(reason);
+    this.drawPlaces();
+  }
+
+  private drawPlaces(): void {
+    const { leftOut, left } = this;
+    if (!leftOut || !left) return;
+    const places: number[] = [], colours: number[] = [];
+    left.numbers.forEach((number, k) => {
+      const reason = leftOut.reasons[number]?.reason;
+      if (!reason || !this.draws(reason)) return;
+      places.push(...left.positions.subarray(3 * k, 3 * k + 3));
+      colours.push(...reasonColours[reason]);
     });
     this.places.geometry.dispose();
     this.places.geometry = new THREE.BufferGeometry();
-    this.places.geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
-    this.places.geometry.setAttribute("color", new THREE.BufferAttribute(colours, 3, true));
+    this.places.geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(places), 3));
+    this.places.geometry.setAttribute("color", new THREE.BufferAttribute(Uint8Array.from(colours), 3, true));
     this.places.visible = true;
-    this.leftOut = answer;
     this.changed();
+  }
+
+  // Places that are drawn.
+  get drawnPlaces(): number {
+    return this.places.visible ? this.places.geometry.getAttribute("position").count : 0;
   }
 
   private showView(view: ViewAnswer, { edge, middles, shares }: Told): void {
@@ -338,13 +381,4 @@ export class LooksView {
     window.clearTimeout(this.timer);
     if (!this.held && this.hovered) this.hideView();
   }
-}
-
-// For the tests: where a cell of the slice is, in the world.
-export function cellPlace(slice: SliceAnswer, column: number, row: number): Vec3 {
-  const [across, up] = sliceAxes(slice.axis);
-  const place: Vec3 = [slice.at, slice.at, slice.at];
-  place[across] = slice.lower[0] + (column + 0.5) * slice.edge * 2 ** slice.level;
-  place[up] = slice.lower[1] + (row + 0.5) * slice.edge * 2 ** slice.level;
-  return place;
 }

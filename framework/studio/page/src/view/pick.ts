@@ -34,7 +34,7 @@ export class Pick {
       this.down = event;
       if (studio.mode === "draw") return this.draw(event);
       if (studio.mode === "outline") return this.outline(event);
-      const time = studio.mode === "orbit" ? this.pathTime(event) : null;
+      const time = studio.mode === "orbit" && !this.isView(event) ? this.pathTime(event) : null;
       if (time !== null) this.alongPath(event, time);
     }, { capture: true });
     stage.world.addEventListener("pointerup", (event) => {
@@ -162,6 +162,8 @@ export class Pick {
 
   // A click on nothing that can be selected.
   onNothing: (ray: THREE.Ray, at: { clientX: number; clientY: number }) => void = () => undefined;
+  // Whether a view is there, which a click is about, not the path.
+  isView: (at: { clientX: number; clientY: number }) => boolean = () => false;
   // A click of a race places a gate.
   onGate: ((at: Vec3) => void) | null = null;
 

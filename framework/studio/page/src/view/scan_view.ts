@@ -3,7 +3,7 @@
 // surface in the colours of what the images will show of it.
 import * as THREE from "three";
 import { colourOf, figuresInWords, predictionIn, shadeOf, type Prediction } from "../state/prediction";
-import { baked } from "./solids";
+import { baked, cutMaterial } from "./solids";
 import { pathOf } from "../state/samples";
 import { frustum, isSite, prismLines, regionsOf, viewAtTime, viewsOf } from "../state/site";
 import type { ScanWorld, Vec3 } from "../state/types";
@@ -74,12 +74,7 @@ export class ScanView {
 
   // What is cut away of the surface; null: nothing.
   cutBy(plane: THREE.Plane | null): void {
-    const { material } = this.surface;
-    const had = material.clippingPlanes?.[0] ?? null;
-    if (had === plane || (had && plane && had.equals(plane))) return;
-    const anew = (had === null) !== (plane === null);
-    material.clippingPlanes = plane ? [plane] : null;
-    if (anew) material.needsUpdate = true;
+    cutMaterial(this.surface.material, plane);
   }
 
   // The nearest triangle of the surface on a ray, in words.
