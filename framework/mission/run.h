@@ -76,6 +76,10 @@ struct MissionSettings {
   // Hears what a scan comes to, once its tours are solved; the plan then ends with Cancelled, and
   // where a graph would have to be made it ends before. For estimates; may be null.
   std::function<void(const Value&)> observe_estimate = nullptr;
+  // Hears where a scan's first flight takes its images and what they show of the ground; with
+  // `first_flight_alone` the plan then ends with Cancelled. For viewers; may be null.
+  std::function<void(const Value&)> observe_first_flight = nullptr;
+  bool first_flight_alone = false;
   // Where scans keep their graph and find it again; null: nowhere. Whoever keeps it clears it when
   // the script, or a file that a mission has read, changes.
   std::shared_ptr<ScanMemory> scan_memory = nullptr;

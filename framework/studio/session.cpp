@@ -266,6 +266,7 @@ void StudioSession::heard(WorkerRole role, Frame frame) {
     if (what == "world") world(frame);
     if (what == "progress") progress(frame);
     if (what == "estimate") estimated(frame);
+    if (what == "first_flight") first_flight(frame);
     if (what == "done" || what == "failed") errand_done(role, std::move(frame));
     return;
   }

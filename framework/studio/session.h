@@ -206,6 +206,7 @@ class StudioSession {
   void world(const Frame& frame);
   void progress(const Frame& frame);
   void estimated(const Frame& frame);
+  void first_flight(const Frame& frame);
   void solver_started();
   void add_errand(PageSocket& page, const PageMessage& message);
   Frame errand_frame(const PageMessage& message);

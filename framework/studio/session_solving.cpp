@@ -304,6 +304,18 @@ void StudioSession::estimated(const Frame& frame) {
   drag_on();
 }
 
+// Of a drag, or of an edit whose revision may still come.
+void StudioSession::first_flight(const Frame& frame) {
+  if (!solve_ || frame.header.at("serial") != Value(solve_->serial)) return;
+  Value message = Value::map();
+  message.set("type", "first_flight");
+  message.set("edit", solve_->settled ? Value() : Value(static_cast<std::int64_t>(solve_->edit)));
+  message.set("tab", solve_->settled ? Value() : Value(solve_->tab));
+  std::string text = to_json(message, -1);
+  text.pop_back();
+  tell_all(text + "," + frame.parts.at(0).substr(1), true);
+}
+
 // ---- errands ------------------------------------------------------------------------------------
 
 void StudioSession::add_errand(PageSocket& page, const PageMessage& message) {

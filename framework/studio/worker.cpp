@@ -238,9 +238,31 @@ class StudioWorker {
     } catch (const Cancelled&) {
     }
     if (whole_->cancelled()) return;
+    const bool other_views = estimate.as_map().empty();
     Frame frame;
     frame.header.set("said", "estimate");
     frame.header.set("estimate", std::move(estimate));
+    send(std::move(frame), serial_);
+    if (other_views) draw_first_flight(layer);
+  }
+
+  // Of a drag: the images of the first flight, before it is flown.
+  void draw_first_flight(const Value& layer) {
+    MissionSettings settings = settings_;
+    settings.cancellation = whole_.get();
+    settings.observe_first_flight = [&](const Value& told) { tell_first_flight(told); };
+    settings.first_flight_alone = true;
+    try {
+      configured_mission(script_, settings, layer)->plan();
+    } catch (const Cancelled&) {
+    }
+  }
+
+  void tell_first_flight(const Value& told) {
+    if (whole_->cancelled()) return;
+    Frame frame;
+    frame.header.set("said", "first_flight");
+    frame.parts.push_back(to_json(told, -1));
     send(std::move(frame), serial_);
   }
 
@@ -258,6 +280,7 @@ class StudioWorker {
     settings.progress = &progress;
     settings.record_growth = true;
     settings.keep_tours = true;
+    settings.observe_first_flight = [this](const Value& told) { tell_first_flight(told); };
     settings.scan_memory = scan_memory();
     // Modules that are required while it plans, as scenes are.
     settings.observe_script = [this](const std::filesystem::path& file) {

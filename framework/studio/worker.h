@@ -10,6 +10,7 @@
 //                            more (its plan and document empty where they are those of the first)
 //                            of a drag of a scan: estimate {estimate: {} or {tours, images,
 //                            seconds, known, seen}}
+//                            of a scan: first_flight [JSON: level, images], before it is flown
 //   drop                     the solve under way ends
 //   begin_at                 the next solve begins at the flight of the plan in the first part
 //   check {layer, judge}     checked {document, mission, files} or refused {why, line, files}

@@ -136,6 +136,8 @@ Value scan_of(const Plan& plan, const ScanRecord& record, const std::vector<cons
                               task.camera.focal_x, task.camera.focal_y, task.camera.principal_x,
                               task.camera.principal_y}));
   value.set("first_views", places_of(record.first_views));
+  Value& footprints = value.set("footprints", Value::list());
+  for (const GroundPolygon& polygon : record.footprints) footprints.push_back(polygon_of(polygon));
   value.set("candidates", places_of(record.candidates));
   value.set("candidate_scores", Value(Value::List(record.alone.begin(), record.alone.end())));
   value.set("seconds", Value(Value::List(record.seconds.begin(), record.seconds.end())));

@@ -272,6 +272,69 @@ TEST_F(StudioLooks, AllThatIsAskedIsWhatTheRunHas) {
   ask_while_planning();
 }
 
+// Of a pattern that is edited the images are told before they are flown: those that then are.
+TEST_F(StudioLooks, AFirstFlightIsDrawnBeforeItIsFlown) {
+  open();
+  const auto told_flight = [&] {
+    return page_->until([](const Value& m) {
+      return m.at("type") == Value("first_flight") || m.at("type") == Value("refused");
+    });
+  };
+  const std::string patch = R"([{"path": "flights", "value": [
+      {"pattern": "ellipse", "views": 20, "reach": 12, "pitch_deg": -40},
+      {"pattern": "meander", "views": 12, "reach": 5, "height": 65, "pitch_deg": -90}]}])";
+  page_->send_text(R"({"type": "preview", "edit": 5, "patch": )" + patch + "}");
+  const Value dragged = told_flight();
+  ASSERT_EQ(dragged.at("type"), Value("first_flight")) << to_json(dragged);
+  EXPECT_EQ(dragged.at("edit"), Value(std::int64_t{5}));
+  EXPECT_EQ(dragged.at("tab"), Value("a"));
+  ASSERT_EQ(dragged.at("images").as_list().size(), 32u);
+  // The camera looks straight down: a rectangle of 600 by 450 pixels.
+  const double high = 65 - dragged.at("level").as_number();
+  for (std::size_t k = 20; k < 32; ++k) {
+    const Value::List& corners = dragged.at("images").as_list()[k].at("footprint").as_list();
+    ASSERT_EQ(corners.size(), 4u);
+    double twice = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Value::List &p = corners[i].as_list(), &q = corners[(i + 1) % 4].as_list();
+      twice += p[0].as_number() * q[1].as_number() - q[0].as_number() * p[1].as_number();
+    }
+    EXPECT_NEAR(twice / 2, 600 * 450 * high * high / (345 * 345), 1e-6 * twice);
+  }
+  page_->send_text(R"({"type": "gesture", "id": "g", "label": "flights", "patch": )" + patch +
+                   ", \"base\": " + std::to_string(revision_) + "}");
+  const Value settled = told_flight();
+  EXPECT_TRUE(settled.at("edit").is_null());
+  EXPECT_EQ(settled.at("images"), dragged.at("images"));
+  const Value world = page_->until_type("world");
+  const Value::List &flown = world.at("scan").at("footprints").as_list(),
+                    &images = dragged.at("images").as_list();
+  ASSERT_EQ(flown.size(), images.size());
+  for (std::size_t k = 0; k < flown.size(); ++k) EXPECT_EQ(flown[k], images[k].at("footprint"));
+}
+
+// Of 2 GiB, almost all of it a hole: refused at once, with the largest that there may be.
+TEST_F(StudioLooks, AMapThatIsTooLargeIsRefused) {
+  write_file_atomically(folder_ / "large.bt", "# Octomap OcTree binary file\n");
+  fs::resize_file(folder_ / "large.bt", std::uintmax_t{2} << 30);
+  write_file_atomically(folder_ / "prior.ply", "ply\n");
+  script_ = "prior.lua";
+  write_file_atomically(folder_ / script_, R"(
+return require("mission.scan").of_prior {
+  name = "p", start = {0, 0, 20}, region = { lower = {-5, -5, 0}, upper = {5, 5, 6} },
+  prior = { map = "large.bt", mesh = "prior.ply" },
+}
+)");
+  address_ = std::make_unique<StudioAddress>(serve());
+  page_ = std::make_unique<PageClient>(*address_, "a");
+  const Value said = page_->until([](const Value& m) {
+    return m.at("type") == Value("script_error") || m.at("type") == Value("answer");
+  });
+  EXPECT_THAT(said.at("message").as_text(),
+              HasSubstr("the map has 2147483648 bytes, and the largest that can be read has "
+                        "1073741824"));
+}
+
 TEST_F(StudioLooks, AFilmHasNoMap) {
   use("filming/castle_flyover.lua");
   address_ = std::make_unique<StudioAddress>(serve());

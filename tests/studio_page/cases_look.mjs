@@ -2,10 +2,10 @@
 // A look into a planned scan with the studio's own server: a voxel under a click, slices of the map,
 // places that were left out, the view under the mouse; each by mouse and by keyboard.
 import assert from "node:assert/strict";
-import { centreOf, frames, studioState, type, waitGrade } from "./browser.mjs";
+import { centreOf, frames, studioState, type, waitGrade, waitRevision } from "./browser.mjs";
 import { served } from "./served.mjs";
 
-const PLANNED = 30000;   // ms at most
+const PLANNED = 120000;   // ms at most
 const options = ["--config", "scan/small", "--set", "resolution=1", "--set", "tour.budget=90",
                  "--set", "map={type: brick, observations: true}",
                  "--set", "forbidden=[{position: [0, 25, 30], within: 12}]"];
@@ -139,6 +139,40 @@ async function lookAtViews(page, picture) {
   await until(page, "window.lapwing.looks.view?.candidate !== 11");
 }
 
+// What the first flight's images show of the ground: as it was flown, while the number of images is
+// dragged, after a pattern is changed and removed by keyboard.
+async function lookAtFirstFlight(page, picture) {
+  await page.click("#frame");
+  await page.click("#scan-first");
+  await until(page, "window.lapwing.footprints === 40");
+  const { revision } = await studioState(page);
+  const slider = await page.$('#pattern-list [data-key="views-1"]');
+  await slider.evaluate((e) => e.scrollIntoView({ block: "center" }));
+  const { x, y, width, height } = await slider.boundingBox();
+  const share = await slider.evaluate((e) => (e.value - e.min) / (e.max - e.min));
+  const at = x + 8 + share * (width - 16);
+  await page.mouse.move(at, y + height / 2);
+  await page.mouse.down();
+  for (let i = 1; i <= 5; ++i) await page.mouse.move(at + 8 * i, y + height / 2);
+  await until(page, "window.lapwing.firstFlight !== null && window.lapwing.footprints > 60");
+  const dragged = await page.evaluate(() => window.lapwing.firstFlight.images.length);
+  assert.match(await words(page, "first-words"), new RegExp(`^${dragged} images, not flown yet`));
+  await picture("look_06_footprints");
+  assert.equal((await studioState(page)).revision, revision, "a drag is no edit");
+  // Dropped, they are those that were flown.
+  await page.keyboard.press("Escape");
+  await page.mouse.up();
+  await type(page, '#pattern-list [data-key="flights[2].views"]', "12");
+  await waitRevision(page, revision + 1);
+  await until(page, "window.lapwing.footprints === 32");
+  await waitGrade(page, "certified", PLANNED);
+  await until(page, "window.lapwing.firstFlight === null && window.lapwing.footprints === 32");
+  await page.focus('#pattern-list [data-key="drop-1"]');
+  await page.keyboard.press("Enter");
+  await waitRevision(page, revision + 2);
+  await until(page, "window.lapwing.footprints === 20");
+}
+
 export const look = (browser, shot) => served(browser, shot, {
   name: "a look into a scan", picture: "look", script: "examples/scan/church.lua", options,
 }, async (page, studio, picture) => {
@@ -151,4 +185,5 @@ export const look = (browser, shot) => served(browser, shot, {
   await lookAtSlices(page, picture);
   await lookAtPlacesLeftOut(page, picture);
   await lookAtViews(page, picture);
+  await lookAtFirstFlight(page, picture);
 });

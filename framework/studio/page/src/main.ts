@@ -13,6 +13,7 @@ import { takeDropped } from "./panel/dropped";
 import { ExplorationPanel } from "./panel/exploration_panel";
 import { PaintingPanel } from "./panel/painting_panel";
 import { RaceGamePanel } from "./panel/race_game";
+import { FirstFlightPanel } from "./panel/first_flight_panel";
 import { LooksPanel } from "./panel/looks_panel";
 import { ScanPanel } from "./panel/scan_panel";
 import { Selected } from "./panel/selected";
@@ -163,6 +164,7 @@ pick.onGate = (at) => list.addGate(at);
 const scan = new ScanPanel(studio, centre);
 scan.onPlace = (place) => navigation.lookAt(place);
 new LooksPanel(studio, looks);
+new FirstFlightPanel(studio);
 pick.isView = ({ clientX, clientY }) => looks.viewAt(clientX, clientY) !== null;
 pick.onNothing = (ray, at) => {
   const view = looks.viewAt(at.clientX, at.clientY);
@@ -332,6 +334,8 @@ Object.defineProperty(window, "lapwing", {
     get surface() { return scanned.triangles; },
     get views() { return session.world.scan?.views ?? []; },
     get grown() { return explored.count; },
+    get footprints() { return scanned.drawn; },
+    get firstFlight() { return session.firstFlight; },
     get looks() {
       const { slice, voxel, view, leftOut } = looks;
       return { slice, voxel, view, leftOut, drawnPlaces: looks.drawnPlaces };

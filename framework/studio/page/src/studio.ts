@@ -16,7 +16,7 @@ import { standingOf, type Grade, type Standing } from "./state/grades";
 import { clamp } from "./state/vector";
 
 export type Topic = "document" | "standing" | "selection" | "time" | "mode" | "link" | "world" |
-  "flown" | "look" | "playing" | "kept";
+  "flown" | "look" | "playing" | "kept" | "draft";
 export type Mode = "orbit" | "place" | "aim" | "draw" | "camera" | "walk" | "outline" | "stroke" | "race";
 export type Rate = 0.5 | 1 | 2;
 
@@ -61,6 +61,7 @@ export class Studio {
         case "standing": this.tell("standing"); break;
         case "link": this.tell("link"); break;
         case "world": this.tell("world"); break;
+        case "first_flight": this.tell("draft"); break;
         case "flown":
           this.flown = event.message as Flown;
           this.tell("flown");

@@ -21,7 +21,7 @@ export type Link = "connecting" | "open" | "lost";
 
 export interface Event {
   what: "link" | "welcome" | "document" | "standing" | "world" | "note" | "flown" | "picture" |
-    "wrote" | "raced" | "estimate" | "look" | "script" | "worker" | "settled";
+    "wrote" | "raced" | "estimate" | "look" | "first_flight" | "script" | "worker" | "settled";
   message?: ServerMessage;
   text?: string;
 }

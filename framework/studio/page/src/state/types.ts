@@ -162,6 +162,7 @@ export interface ScanWorld {
            tour?: number }[];    // of several batteries: whose, from 0
   image: number[];             // width, height, focal lengths and principal point, pixels
   first_views: Vec3[];
+  footprints?: [number, number][][];    // of those, on the region's lowest level
   candidates: Vec3[];
   candidate_scores?: number[];   // of each by itself
   seconds: number[];
@@ -270,6 +271,15 @@ export interface Raced {
   files?: string[];
 }
 
+// A first flight that is not flown yet.
+export interface FirstFlight {
+  type: "first_flight";
+  edit: number | null;
+  tab: string | null;
+  level: number;                 // m, of the ground
+  images: { position: Vec3; footprint: [number, number][] }[];
+}
+
 // Answers to questions about the scan on display.
 export interface VoxelAnswer {
   type: "voxel";
@@ -345,6 +355,7 @@ export type ServerMessage =
   | Raced
   | Estimate
   | LookAnswer
+  | FirstFlight
   | ({ type: "world" } & World)
   | { type: "refused"; id?: string; edit?: number; why: string }
   | { type: "failed"; id?: string; edit?: number; why: string }
