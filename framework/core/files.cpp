@@ -237,7 +237,12 @@ std::string read_file(const fs::path& path, std::size_t limit_bytes) {
 
   std::string contents;
   if (S_ISREG(info.st_mode)) {
-    contents.reserve(std::min(static_cast<std::size_t>(info.st_size), limit_bytes));
+    const auto size = static_cast<std::size_t>(info.st_size);
+    // Before a byte of it takes memory.
+    if (size > limit_bytes)
+      cannot_read(path, "with " + std::to_string(size) + " bytes it is larger than " +
+                            std::to_string(limit_bytes) + " bytes");
+    contents.reserve(size);
   }
   char buffer[1 << 16];
   Source source(path, descriptor, S_ISFIFO(info.st_mode));

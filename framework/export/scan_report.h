@@ -41,6 +41,7 @@ struct ScanRecord {
   std::shared_ptr<const MeshScene> prior;  // likewise
   bool surveyed = false;  // map and mesh are of a surveyor's data, not of a first flight
   std::vector<Eigen::Vector3d> first_views;
+  std::vector<std::vector<Eigen::Vector2d>> footprints;  // of those, on the region's lowest level
   std::vector<Eigen::Vector3d> candidates;
   std::vector<double> alone;                 // score of each candidate by itself
   std::vector<std::pair<int, int>> motions;  // between candidates

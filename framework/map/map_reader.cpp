@@ -117,7 +117,9 @@ class Reader {
 
   void add_leaf(const VoxelKey& key, int level, float log_odds) {
     if (file_.leaves.size() >= kMostLeaves)
-      fail("has more than " + std::to_string(kMostLeaves) + " leaves");
+      fail("has more than " + std::to_string(kMostLeaves) +
+           " leaves, the most that can be read: cut it to the region of the flight, or make it "
+           "with larger voxels");
     file_.leaves.push_back({key, static_cast<std::uint8_t>(level), 0, log_odds});
   }
 
@@ -174,6 +176,12 @@ MapFile parse_map(std::string_view bytes, const std::string& name) {
 }
 
 MapFile read_map_file(const std::filesystem::path& path) {
+  std::error_code none;
+  const std::uintmax_t size = std::filesystem::file_size(path, none);
+  if (!none && size > kLargestMap)
+    throw InputError(path.string() + ": the map has " + std::to_string(size) +
+                     " bytes, and the largest that can be read has " + std::to_string(kLargestMap) +
+                     ": cut it to the region of the flight, or make it with larger voxels");
   return parse_map(read_file(path, kLargestMap), path.string());
 }
 

@@ -383,6 +383,7 @@ GraphMaking graph_making(lua_State* state, const MissionRun& run, const Paramete
       ruled(space_of(*work.prior, given.number("mesh_room")), *work.rules, work.prior->mapping.map);
   work.allowed = made.settings.candidates.allowed;
   work.body = made.settings.candidates.half;
+  work.mesh_room = given.number("mesh_room");
   return made;
 }
 

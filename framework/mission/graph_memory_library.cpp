@@ -7,6 +7,7 @@
 #include "framework/core/json.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
+#include "framework/mission/scan_look.h"
 #include "framework/mission/scan_objects.h"
 
 namespace lapwing {
@@ -37,10 +38,7 @@ std::string memory_key(const MissionRun& run, const Parameters& given) {
 // How many graphs like this one are kept.
 std::size_t kept_graphs(const ScanWork& work) {
   constexpr std::size_t kSmall = std::size_t{64} << 20;  // bytes
-  std::size_t bytes = work.graph.score->bytes() + work.prior->mapping.map->bytes() +
-                      work.graph.voxels.size() * sizeof(VoxelKey);
-  if (work.pinned_score) bytes += work.pinned_score->bytes();
-  return bytes <= kSmall ? 4 : 1;
+  return bytes_of(work) <= kSmall ? 4 : 1;
 }
 
 // run:kept_graph{without =, also =}: graph and prior of the plan before, or nil. With `graph` that

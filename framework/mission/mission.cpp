@@ -269,6 +269,7 @@ MissionResult result_of(Sandbox& sandbox, const PlanObject& planned) {
   result.told = planned.told;
   result.sections = planned.sections;
   result.scan = planned.scan;
+  result.kept = planned.kept;
   result.exploration = planned.exploration;
   if (planned.late_sections) {
     const Sandbox::ClockPause pause(sandbox);

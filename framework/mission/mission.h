@@ -24,6 +24,7 @@ namespace lapwing {
 
 struct FleetResult;
 struct ExplorationRecord;  // export/exploration_report.h
+struct KeptTour;           // scan_look.h
 struct ScanRecord;         // export/scan_report.h
 
 struct MissionResult {
@@ -43,6 +44,7 @@ struct MissionResult {
   std::vector<std::string> told = {};           // likewise, that stand in no plan
   std::vector<Section> sections = {};           // of the report, beside those of every flight
   std::shared_ptr<const ScanRecord> scan = {};  // of a scan: what all its tours were planned on
+  std::shared_ptr<const KeptTour> kept = {};    // of a tour of a scan, where it is asked for
   std::shared_ptr<const ExplorationRecord> exploration = {};  // of an exploration: how it went
   // Where the files lie that the plan's environment names, as long as the mission lives; and their
   // names.

@@ -34,6 +34,7 @@ struct ScriptTerm;  // script_terms.h
 struct ExplorationRecord;  // export/exploration_report.h
 struct TakenImage;         // likewise
 struct ScanRecord;         // export/scan_report.h
+struct KeptTour;           // scan_look.h
 struct ScanWork;           // scan_objects.h
 struct TourDefinition;
 class MeshScene;
@@ -63,6 +64,7 @@ struct MissionSettings {
   bool record_steps = false;
   // Of explorations, with `record_steps`: hears of each image, and may wait. May be null.
   std::function<void(const TakenImage&)> observe_image = nullptr;
+  bool keep_tours = false;  // of scans: what each tour was chosen from, for a viewer
   std::function<void(const std::string&)> print = [](const std::string&) {};
   // Hears of the script and of every module that it requires before they are read; may be null.
   std::function<void(const std::filesystem::path&)> observe_script;
@@ -79,6 +81,10 @@ struct MissionSettings {
   // Hears what a scan comes to, once its tours are solved; the plan then ends with Cancelled, and
   // where a graph would have to be made it ends before. For estimates; may be null.
   std::function<void(const Value&)> observe_estimate = nullptr;
+  // Hears where a scan's first flight takes its images and what they show of the ground; with
+  // `first_flight_alone` the plan then ends with Cancelled. For viewers; may be null.
+  std::function<void(const Value&)> observe_first_flight = nullptr;
+  bool first_flight_alone = false;
   // Where scans keep their graph and find it again; null: nowhere. Whoever keeps it clears it when
   // the script, or a file that a mission has read, changes.
   std::shared_ptr<ScanMemory> scan_memory = nullptr;
@@ -130,6 +136,7 @@ struct PlanObject {
   std::vector<Section> sections = {};
   std::function<std::vector<Section>(const Plan&)> late_sections = {};
   std::shared_ptr<const ScanRecord> scan = {};                // of a scan: what it was planned on
+  std::shared_ptr<const KeptTour> kept = {};                  // of a scan, where it is asked for
   std::shared_ptr<const ExplorationRecord> exploration = {};  // of an exploration: how it went
 };
 

@@ -15,6 +15,7 @@
 #include "framework/mission/guard.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/run.h"
+#include "framework/mission/scan_look.h"
 #include "framework/mission/scan_objects.h"
 #include "framework/mission/scan_record.h"
 
@@ -316,6 +317,7 @@ int scan_plan_of_run(lua_State* state) {
     const Sandbox::ClockPause pause(Sandbox::of(state));
     const TourObject* told = &tour;  // the tour that the report is of
     std::optional<TourObject> passed;
+    std::vector<int> images;
     if (tour.passing) {
       PassedFlight flown = passed_flight(tour, *flight);
       passed = flown_tour(tour, flown.views);
@@ -323,12 +325,14 @@ int scan_plan_of_run(lua_State* state) {
       made.notes.push_back(miss_in_words(flown));
       plan.trajectory = std::move(flown.trajectory);
       plan.task.scan = task_of_scan(work, tour.walk, std::move(flown.views), run.settings.threads);
+      images = tour.walk;
     } else {
       const Walk walk = legs.empty() ? walk_of(tour) : views_of(tour);
       Pursuit flown = legs.empty() ? pursue(walk.points, walk.stops, work.vehicle, work.flight)
                                    : joined_flight(tour, legs);
-      plan.task.scan = task_of_scan(work, images_of(walk), planned_views(work, walk, flown),
-                                    run.settings.threads);
+      images = images_of(walk);
+      plan.task.scan =
+          task_of_scan(work, images, planned_views(work, walk, flown), run.settings.threads);
       plan.trajectory = std::move(flown.trajectory);
       if (work.vehicle.gimbal) turn_gimbal(plan.trajectory, walk, flown.views);
     }
@@ -353,6 +357,9 @@ int scan_plan_of_run(lua_State* state) {
       made.late_sections = [record](const Plan& of) { return scan_sections(of, *record); };
       made.scan = record;
     }
+    if (run.settings.keep_tours)
+      made.kept = std::make_shared<const KeptTour>(
+          KeptTour{told->work, std::move(images), told->reachable});
     const std::string small = warning_of_small_camera(plan.task.scan->camera);
     if (!small.empty()) made.notes.push_back(small);
   }

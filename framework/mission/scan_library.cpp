@@ -9,6 +9,7 @@
 #include "framework/mission/lua_value.h"
 #include "framework/mission/scan_objects.h"
 #include "framework/mission/scan_record.h"
+#include "framework/view/footprint.h"
 
 namespace lapwing {
 
@@ -160,7 +161,8 @@ int solve_tour_of_run(lua_State* state) {
     if (result.report.status == TourStatus::failed) throw PluginError(result.report.message);
     tour.report = result.report;
     tour.walk = std::move(result.walk);
-    take_out_pinned(work, {tour.walk}, problem.reachable(), tour.report);
+    tour.reachable = problem.reachable();
+    take_out_pinned(work, {tour.walk}, tour.reachable, tour.report);
   }
   run.solve_seconds += tour.report.wall_seconds;
   logging::info(
@@ -215,6 +217,39 @@ int estimate_of_run(lua_State* state) {
   throw Cancelled();
 }
 
+ParameterTable first_flight_table() {
+  ParameterTable table;
+  table.tables("poses", viewpoint_table(), "where it takes its images", true)
+      .table("camera", pinhole_table(), "camera of the images")
+      .number("range", 60, "m", "largest depth", above(0))
+      .number("level", 0, "m", "height of the ground, world");
+  return table;
+}
+
+// run:first_flight{poses =, camera =, range =, level =}
+int first_flight_of_run(lua_State* state) {
+  MissionRun& run = run_of(state);
+  const Parameters given = table_argument(state, 2, first_flight_table(), "first_flight");
+  if (!run.settings.observe_first_flight) return 0;
+  const Pinhole pinhole = pinhole_of(given.table("camera"));
+  Value told = Value::map();
+  told.set("level", given.number("level"));
+  Value& images = told.set("images", Value::list());
+  for (const Parameters& pose : given.tables("poses")) {
+    const Viewpoint view = viewpoint_of(pose);
+    Value one = Value::map();
+    one.set("position", list_of(view.position));
+    Value& corners = one.set("footprint", Value::list());
+    for (const Eigen::Vector2d& p :
+         footprint_of(view, pinhole, given.number("level"), given.number("range")))
+      corners.push_back(Value(Value::List{p.x(), p.y()}));
+    images.push_back(std::move(one));
+  }
+  run.settings.observe_first_flight(told);
+  if (run.settings.first_flight_alone) throw Cancelled();
+  return 0;
+}
+
 }  // namespace
 
 void open_scan_library(lua_State* state) {
@@ -232,7 +267,11 @@ std::span<const Binding> scan_methods_of_run() {
       {"estimate", &guarded<estimate_of_run>, "(of: @)",
        "tells what solved tours come to, where only that is asked for: "
        "there the plan ends",
-       &estimate_table, kEstimateObjects}};
+       &estimate_table, kEstimateObjects},
+      {"first_flight", &guarded<first_flight_of_run>, "(flown: @)",
+       "tells a viewer where a first flight takes its images and what they show of the ground; "
+       "where only that is asked for, the plan ends",
+       &first_flight_table}};
   static const std::vector<Binding> all = [] {
     std::vector<Binding> list;
     for (const std::span<const Binding> part :

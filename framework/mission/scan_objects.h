@@ -75,6 +75,7 @@ struct ScanWork : LegFlight {
   std::shared_ptr<const ViewScore> pinned_score;
   Eigen::AlignedBox3d allowed;  // where the vehicle's middle may be
   Eigen::Vector3d body;         // half edges of the vehicle's box, m
+  double mesh_room = 0;         // m from the prior mesh that the box keeps beside
   std::shared_ptr<const FlightRules> rules = std::make_shared<const FlightRules>();
   std::vector<HiddenPart> hidden;    // what the rules keep from all candidates
   std::vector<Viewpoint> forbidden;  // a sample of the views that only the rules forbid
@@ -111,6 +112,9 @@ struct TourObject {
   TourReport report;
   std::vector<int> walk;
   std::shared_ptr<const PassFlight> passing = nullptr;  // of a tour of passes
+  // Views that it, or another tour of its team, can reach within the budget, ascending; of passes
+  // none, as nobody knows.
+  std::vector<int> reachable = {};
 };
 
 inline constexpr const char* kPriorType = "prior";

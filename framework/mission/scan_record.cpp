@@ -7,6 +7,7 @@
 #include "framework/export/prediction_mesh.h"
 #include "framework/export/prediction_report.h"
 #include "framework/mission/run.h"
+#include "framework/view/footprint.h"
 #include "framework/view/true_surface.h"
 
 namespace lapwing {
@@ -83,7 +84,12 @@ std::shared_ptr<ScanRecord> begun_record(const ScanWork& work) {
   record->map = work.prior->mapping.map;
   record->prior = work.prior->mesh;
   record->surveyed = work.prior->surveyed;
-  for (const Viewpoint& v : work.prior->views) record->first_views.push_back(v.position);
+  const SightSettings& sight = work.visible->settings();
+  for (const Viewpoint& v : work.prior->views) {
+    record->first_views.push_back(v.position);
+    record->footprints.push_back(
+        footprint_of(v, sight.pinhole, sight.region.bounds().min().z(), sight.range));
+  }
   for (const Viewpoint& v : graph.candidates.viewpoints) record->candidates.push_back(v.position);
   for (int view = 0; view < graph.score->views(); ++view)
     record->alone.push_back(graph.score->alone(view));

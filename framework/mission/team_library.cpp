@@ -166,8 +166,8 @@ int solve_team_of_run(lua_State* state) {
       const TourProblem& tour = problem.tour(static_cast<int>(i));
       TourReport report = report_of_tour(team.report, tour, result.walks[i], problem.size());
       take_out_pinned(*work, {result.walks[i]}, tour.reachable(), report);
-      team.tours.push_back(
-          {work, chosen.type, tour.budget(), std::move(report), std::move(result.walks[i])});
+      team.tours.push_back({work, chosen.type, tour.budget(), std::move(report),
+                            std::move(result.walks[i]), nullptr, team.reachable});
     }
   }
   run.solve_seconds += team.report.wall_seconds;

@@ -18,12 +18,12 @@ constexpr std::size_t kMostAfter = 64;  // as many as may wait
 constexpr std::size_t kMostPlayers = 8;
 constexpr std::int64_t kLargestNumber = (std::int64_t{1} << 53) - 1;
 
-constexpr std::array kTypes{Type::hello,          Type::preview,     Type::gesture,
-                            Type::undo,           Type::redo,        Type::rest,
-                            Type::resolve_script, Type::fly,         Type::picture,
-                            Type::export_plan,    Type::save_report, Type::export_lua,
-                            Type::race,           Type::stick,       Type::list_runs,
-                            Type::open_run,       Type::pace};
+constexpr std::array kTypes{
+    Type::hello,       Type::preview,        Type::gesture, Type::undo,      Type::redo,
+    Type::rest,        Type::resolve_script, Type::fly,     Type::picture,   Type::export_plan,
+    Type::save_report, Type::export_lua,     Type::race,    Type::stick,     Type::voxel,
+    Type::slice,       Type::left_out,       Type::view,    Type::list_runs, Type::open_run,
+    Type::pace};
 
 Type type_named(const std::string& name) {
   for (const Type type : kTypes)
@@ -47,6 +47,7 @@ class MessageFields {
     if (!found) --read_;
     return found;
   }
+  bool has(const char* name) const { return message_.find(name) != nullptr; }
   std::string text(const char* name, std::size_t longest, bool may_be_empty = false) {
     const Value& value = at(name);
     const bool fits = value.is_text() && value.as_text().size() <= longest &&
@@ -214,6 +215,48 @@ void read_run(MessageFields& fields, PageMessage& message) {
                      message.folder + "'");
 }
 
+constexpr double kFarthest = 1e7;  // m
+
+void read_numbers(MessageFields& fields, const char* name, std::size_t count,
+                  PageMessage& message) {
+  const Value& numbers = fields.at(name);
+  if (!numbers.is_list() || numbers.as_list().size() != count)
+    throw InputError(std::string(name) + ": expected " + std::to_string(count) + " numbers");
+  for (const Value& number : numbers.as_list())
+    message.at.push_back(MessageFields::checked(number, name, -kFarthest, kFarthest));
+}
+
+// One field of two.
+bool has_first(MessageFields& fields, const char* first, const char* second) {
+  const bool one = fields.has(first), two = fields.has(second);
+  if (one == two) throw InputError(std::string("expected either ") + first + " or " + second);
+  return one;
+}
+
+void read_voxel(MessageFields& fields, PageMessage& message) {
+  read_id(fields, message);
+  if (has_first(fields, "ray", "position"))
+    read_numbers(fields, "ray", 6, message);
+  else
+    read_numbers(fields, "position", 3, message);
+}
+
+void read_slice(MessageFields& fields, PageMessage& message) {
+  read_id(fields, message);
+  const std::string axis = fields.text("axis", kLongestName);
+  if (axis != "x" && axis != "y" && axis != "z") throw InputError("axis: expected x, y or z");
+  message.axis = axis.front() - 'x';
+  message.at = {fields.number("at", -kFarthest, kFarthest)};
+}
+
+void read_view(MessageFields& fields, PageMessage& message) {
+  read_id(fields, message);
+  message.of_tour = has_first(fields, "image", "candidate");
+  message.view = static_cast<std::size_t>(
+      fields.count(message.of_tour ? "image" : "candidate", 0, kLargestNumber));
+  if (message.of_tour) read_tour(fields, message);
+}
+
 void read_fields(MessageFields& fields, PageMessage& message) {
   switch (message.type) {
     case Type::hello:
@@ -261,6 +304,14 @@ void read_fields(MessageFields& fields, PageMessage& message) {
       return read_race(fields, message);
     case Type::stick:
       return read_sticks(fields, message);
+    case Type::voxel:
+      return read_voxel(fields, message);
+    case Type::slice:
+      return read_slice(fields, message);
+    case Type::left_out:
+      return read_id(fields, message);
+    case Type::view:
+      return read_view(fields, message);
   }
 }
 
@@ -302,6 +353,14 @@ const char* to_string(PageMessageType type) {
       return "open_run";
     case Type::pace:
       return "pace";
+    case Type::voxel:
+      return "voxel";
+    case Type::slice:
+      return "slice";
+    case Type::left_out:
+      return "left_out";
+    case Type::view:
+      return "view";
   }
   return "";
 }

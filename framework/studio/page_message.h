@@ -29,6 +29,10 @@ enum class PageMessageType {
   list_runs,
   open_run,
   pace,
+  voxel,
+  slice,
+  left_out,
+  view,
 };
 // Of the planning of an exploration.
 enum class Pace { run, pause, step };
@@ -60,7 +64,11 @@ struct PageMessage {
   std::string folder;                              // open_run: a name in out/
   Value players = Value::list();                   // race: names and numbers of each
   std::vector<std::array<double, 2>> sticks = {};  // of stick: forward and left, -1 to 1
-  std::size_t bytes = 0;                           // of its text
+  std::vector<double> at = {};  // voxel: a place, or where a ray begins and whither; slice: m
+  int axis = 2;                 // of slice: 0 is x
+  bool of_tour = false;         // view: `view` is an image of `tour`, else a candidate
+  std::size_t view = 0;         // from 0
+  std::size_t bytes = 0;        // of its text
 };
 
 // Of a picture, each way.

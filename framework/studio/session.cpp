@@ -91,8 +91,9 @@ void StudioSession::opened(const std::shared_ptr<PageSocket>& page) {
 void StudioSession::closed(PageSocket& page) {
   for (Check& check : checks_)
     if (check.proposal.from == &page) check.proposal.from = nullptr;
-  for (Errand& errand : errand_queue_)
-    if (errand.from == &page) errand.from = nullptr;
+  for (auto& [role, line] : errand_lines_)
+    for (Errand& errand : line.queue)
+      if (errand.from == &page) errand.from = nullptr;
   pages_.erase(&page);
   if (pages_.empty()) pace(Pace::run);  // nobody is left who could
 }
@@ -273,9 +274,11 @@ void StudioSession::heard(WorkerRole role, Frame frame) {
     if (what == "progress") progress(frame);
     if (what == "estimate") estimated(frame);
     if (what == "image") took_image(std::move(frame));
+    if (what == "first_flight") first_flight(frame);
+    if (what == "done" || what == "failed") errand_done(role, std::move(frame));
     return;
   }
-  if (role == WorkerRole::errands) return errand_done(std::move(frame));
+  if (role == WorkerRole::errands) return errand_done(role, std::move(frame));
   if (what == "checked") checked(frame);
   if (what == "refused") not_checked(frame);
   if (what == "checked" || what == "refused") tell_mission();
@@ -297,14 +300,7 @@ void StudioSession::started(WorkerRole role) {
   tell_all(message);
   if (crashed_.erase(role) == 0) return;  // the first time
   if (role == WorkerRole::solver) solver_started();
-  if (role == WorkerRole::errands && errand_under_way_) {
-    Errand& errand = errand_queue_.front();
-    if (errand.crashes <= 1) return errands_->send(errand.frame);
-    fail(errand.from, errand.message, "the process that does it crashed twice");
-    errand_queue_.pop_front();
-    errand_under_way_ = false;
-    return next_errand();
-  }
+  if (errand_lines_.contains(role)) errands_started(role);
   if (role != WorkerRole::checker) return;
   if (document_ && description_.empty()) ask_for_description();
   if (checks_.empty() || checks_.front().serial == 0) return;
@@ -330,7 +326,9 @@ void StudioSession::crashed(WorkerRole role, const std::string& why) {
   // What was sent to it and is not done; what comes from now on waits for the next process.
   if (role == WorkerRole::solver && solve_ && solve_->rank < 2) ++solve_->crashes;
   if (role == WorkerRole::checker && !checks_.empty()) ++checks_.front().crashes;
-  if (role == WorkerRole::errands && errand_under_way_) ++errand_queue_.front().crashes;
+  if (const auto line = errand_lines_.find(role);
+      line != errand_lines_.end() && line->second.under_way)
+    ++line->second.queue.front().crashes;
   message.set("state", "crashed");
   message.set("message", as_utf8(why));
   tell_all(message);

@@ -124,6 +124,11 @@ class StudioSession {
     Frame frame = {};
     int crashes = 0;
   };
+  // Of one working process, one after the other.
+  struct ErrandLine {
+    std::deque<Errand> queue = {};
+    bool under_way = false;  // the first of them
+  };
   // What a document ended with, to be shown again where it comes back, as by undo.
   struct Remembered {
     std::string layer;  // as JSON
@@ -207,11 +212,15 @@ class StudioSession {
   std::string image_text(const std::string& image) const;
   void pace(Pace pace);
   std::string pace_text() const;
+  void first_flight(const Frame& frame);
   void solver_started();
   void add_errand(PageSocket& page, const PageMessage& message);
   Frame errand_frame(const PageMessage& message);
-  void next_errand();
-  void errand_done(Frame frame);
+  void add_look(const PageMessage& message, Frame& frame) const;
+  void next_errand(WorkerRole role);
+  void errand_done(WorkerRole role, Frame frame);
+  void errands_started(WorkerRole role);
+  std::string answer_of_errand(const Errand& errand, Frame frame);
 
   EventLoop& loop_;
   SessionSettings settings_;
@@ -238,8 +247,9 @@ class StudioSession {
   std::string world_;                     // the last one told
   std::vector<std::string> world_blobs_;  // that it names
   BlobStore surfaces_{std::size_t{512} << 20}, pictures_{std::size_t{64} << 20};
-  std::deque<Errand> errand_queue_;
-  bool errand_under_way_ = false;
+  // The solving process answers what is asked about its plans.
+  std::map<WorkerRole, ErrandLine> errand_lines_{{WorkerRole::errands, {}},
+                                                 {WorkerRole::solver, {}}};
   std::int64_t serial_ = 0;
   std::deque<Remembered> remembered_;             // of the script as it is; the newest first
   std::set<std::filesystem::path> script_files_;  // that the script requires

@@ -16,6 +16,10 @@ using Type = PageMessageType;
 constexpr std::size_t kMostErrands = 32;
 constexpr std::size_t kMostRemembered = 64, kMostRememberedBytes = std::size_t{128} << 20;
 
+bool is_look(PageMessageType type) {
+  return type == Type::voxel || type == Type::slice || type == Type::left_out || type == Type::view;
+}
+
 int rank_of(const std::string& grade) {
   return grade == "step" ? 0 : grade == "converged" ? 1 : 2;
 }
@@ -340,28 +344,70 @@ void StudioSession::estimated(const Frame& frame) {
   drag_on();
 }
 
+// Of a drag, or of an edit whose revision may still come.
+void StudioSession::first_flight(const Frame& frame) {
+  if (!solve_ || frame.header.at("serial") != Value(solve_->serial)) return;
+  Value message = Value::map();
+  message.set("type", "first_flight");
+  message.set("edit", solve_->settled ? Value() : Value(static_cast<std::int64_t>(solve_->edit)));
+  message.set("tab", solve_->settled ? Value() : Value(solve_->tab));
+  std::string text = to_json(message, -1);
+  text.pop_back();
+  tell_all(text + "," + frame.parts.at(0).substr(1), true);
+}
+
 // ---- errands ------------------------------------------------------------------------------------
 
 void StudioSession::add_errand(PageSocket& page, const PageMessage& message) {
-  // Of pictures and flights a page wants the newest alone.
-  const bool newest_alone = message.type == Type::picture || message.type == Type::fly;
-  for (std::size_t i = errand_under_way_ ? 1 : 0; newest_alone && i < errand_queue_.size(); ++i) {
-    if (errand_queue_[i].from != &page || errand_queue_[i].type != message.type) continue;
-    errand_queue_.erase(errand_queue_.begin() + static_cast<std::ptrdiff_t>(i));
+  const bool look = is_look(message.type);
+  ErrandLine& line = errand_lines_[look ? WorkerRole::solver : WorkerRole::errands];
+  // Of pictures, flights and looks a page wants the newest alone.
+  const bool newest_alone = look || message.type == Type::picture || message.type == Type::fly;
+  for (std::size_t i = line.under_way ? 1 : 0; newest_alone && i < line.queue.size(); ++i) {
+    if (line.queue[i].from != &page || line.queue[i].type != message.type) continue;
+    line.queue.erase(line.queue.begin() + static_cast<std::ptrdiff_t>(i));
     break;
   }
-  if (errand_queue_.size() >= kMostErrands) return fail(&page, message, "too much is asked for");
+  if (line.queue.size() >= kMostErrands) return fail(&page, message, "too much is asked for");
   Errand errand;
   errand.type = message.type;
   errand.from = &page;
   errand.message = message;
-  errand_queue_.push_back(std::move(errand));
-  next_errand();
+  line.queue.push_back(std::move(errand));
+  next_errand(look ? WorkerRole::solver : WorkerRole::errands);
+}
+
+// A question about the plan on display.
+void StudioSession::add_look(const PageMessage& message, Frame& frame) const {
+  if (mission_kind_ != "scan")
+    throw InputError("a mission of kind '" + mission_kind_ + "' has no map of a first flight");
+  if (!displayed_) throw InputError("the scan is not planned yet");
+  frame.header.set("folder", displayed_->folder);
+  switch (message.type) {
+    case Type::voxel:
+      frame.header.set("at", Value(Value::List(message.at.begin(), message.at.end())));
+      break;
+    case Type::slice:
+      frame.header.set("axis", std::int64_t{message.axis});
+      frame.header.set("at", message.at.front());
+      break;
+    case Type::view:
+      frame.header.set(message.of_tour ? "image" : "candidate",
+                       static_cast<std::int64_t>(message.view));
+      frame.header.set("tour", static_cast<std::int64_t>(message.tour));
+      break;
+    default:
+      break;
+  }
 }
 
 Frame StudioSession::errand_frame(const PageMessage& message) {
   Frame frame;
   frame.header.set("do", to_string(message.type));
+  if (is_look(message.type)) {
+    add_look(message, frame);
+    return frame;
+  }
   const auto use = [&](const std::optional<Settled>& settled, const char* lacking) {
     if (!settled) throw InputError(lacking);
     frame.header.set("layer", settled->layer);
@@ -437,36 +483,64 @@ Frame StudioSession::errand_frame(const PageMessage& message) {
   return frame;
 }
 
-void StudioSession::next_errand() {
-  while (!errand_under_way_ && !errand_queue_.empty()) {
-    Errand& errand = errand_queue_.front();
+void StudioSession::next_errand(WorkerRole role) {
+  ErrandLine& line = errand_lines_[role];
+  while (!line.under_way && !line.queue.empty()) {
+    Errand& errand = line.queue.front();
     try {
       errand.frame = errand_frame(errand.message);
     } catch (const InputError& error) {
       fail(errand.from, errand.message, error.what());
-      errand_queue_.pop_front();
+      line.queue.pop_front();
       continue;
     }
     errand.serial = ++serial_;
     errand.frame.header.set("serial", errand.serial);
-    errands_->send(errand.frame);
-    errand_under_way_ = true;
+    (role == WorkerRole::solver ? solver_ : errands_)->send(errand.frame);
+    line.under_way = true;
   }
 }
 
-void StudioSession::errand_done(Frame frame) {
-  if (!errand_under_way_ || frame.header.at("serial") != Value(errand_queue_.front().serial))
-    return;
-  const Errand errand = std::move(errand_queue_.front());
-  errand_queue_.pop_front();
-  errand_under_way_ = false;
+// Of a process that had crashed: once more, but not a third time.
+void StudioSession::errands_started(WorkerRole role) {
+  ErrandLine& line = errand_lines_[role];
+  if (!line.under_way) return;
+  Errand& errand = line.queue.front();
+  if (errand.crashes <= 1)
+    return (role == WorkerRole::solver ? solver_ : errands_)->send(errand.frame);
+  fail(errand.from, errand.message, "the process that does it crashed twice");
+  line.queue.pop_front();
+  line.under_way = false;
+  next_errand(role);
+}
+
+void StudioSession::errand_done(WorkerRole role, Frame frame) {
+  ErrandLine& line = errand_lines_[role];
+  if (!line.under_way || frame.header.at("serial") != Value(line.queue.front().serial)) return;
+  const Errand errand = std::move(line.queue.front());
+  line.queue.pop_front();
+  line.under_way = false;
   if (frame.header.at("said") != Value("done")) {
     fail(errand.from, errand.message, frame.header.at("why").as_text());
-    return next_errand();
+    return next_errand(role);
   }
+  const std::string text = answer_of_errand(errand, std::move(frame));
+  if (errand.from && pages_.count(errand.from))
+    errand.from->send(std::make_shared<const std::string>(text));
+  next_errand(role);
+}
+
+std::string StudioSession::answer_of_errand(const Errand& errand, Frame frame) {
   Value message = Value::map();
   std::string raw;
-  if (errand.type == Type::fly) {
+  if (is_look(errand.type)) {
+    message.set("type", to_string(errand.type));
+    message.set("id", errand.message.id);
+    const Value::List& blobs = frame.header.at("blobs").as_list();
+    for (std::size_t i = 0; i < blobs.size(); ++i)
+      message.set(blobs[i].as_text(), pictures_.put(std::move(frame.parts.at(i + 1))));
+    raw = "," + frame.parts.at(0).substr(1, frame.parts.at(0).size() - 2);
+  } else if (errand.type == Type::fly) {
     message.set("type", "flown");
     message.set("edit", static_cast<std::int64_t>(errand.message.edit));
     for (const char* key : {"lost", "finished", "kept", "worst"})
@@ -506,9 +580,7 @@ void StudioSession::errand_done(Frame frame) {
   }
   std::string text = to_json(message, -1);
   text.insert(text.size() - 1, raw);
-  if (errand.from && pages_.count(errand.from))
-    errand.from->send(std::make_shared<const std::string>(text));
-  next_errand();
+  return text;
 }
 
 }  // namespace lapwing

@@ -21,6 +21,7 @@
 #include "framework/studio/plan_message.h"
 #include "framework/studio/worker_errands.h"
 #include "framework/studio/worker_link.h"
+#include "framework/studio/worker_looks.h"
 #include "framework/studio/worker_progress.h"
 #include "framework/trajectory/interpolate.h"
 
@@ -68,7 +69,9 @@ class StudioWorker {
         judge_fleet_(std::move(judge_fleet)),
         errands_(script, settings_, std::move(program)),
         editor_(
-            script, settings_, [this](const EditedPlan& edited) { hear(edited); }, judge_) {}
+            script, settings_, [this](const EditedPlan& edited) { hear(edited); }, judge_),
+        looks_([this](Frame frame, std::int64_t serial) { send(std::move(frame), serial); },
+               settings.threads) {}
 
   void run() {
     std::thread reader([this] { read(); });
@@ -91,6 +94,7 @@ class StudioWorker {
 
   void take(Frame frame) {
     const std::string what = frame.header.at("do").as_text();
+    if (WorkerLooks::answers(what)) return looks_.ask(std::move(frame));
     const std::lock_guard lock(mutex_);
     if (what == "pace") {
       paused_ = frame.header.at("paused").as_boolean();
@@ -191,6 +195,7 @@ class StudioWorker {
 
   void send(Frame answer, std::int64_t serial) {
     answer.header.set("serial", serial);
+    const std::lock_guard lock(sending_);
     if (!write_frame(kWorkerOutput, answer)) ::_exit(0);  // nobody is left to tell
   }
 
@@ -239,9 +244,31 @@ class StudioWorker {
     } catch (const Cancelled&) {
     }
     if (whole_->cancelled()) return;
+    const bool other_views = estimate.as_map().empty();
     Frame frame;
     frame.header.set("said", "estimate");
     frame.header.set("estimate", std::move(estimate));
+    send(std::move(frame), serial_);
+    if (other_views) draw_first_flight(layer);
+  }
+
+  // Of a drag: the images of the first flight, before it is flown.
+  void draw_first_flight(const Value& layer) {
+    MissionSettings settings = settings_;
+    settings.cancellation = whole_.get();
+    settings.observe_first_flight = [&](const Value& told) { tell_first_flight(told); };
+    settings.first_flight_alone = true;
+    try {
+      configured_mission(script_, settings, layer)->plan();
+    } catch (const Cancelled&) {
+    }
+  }
+
+  void tell_first_flight(const Value& told) {
+    if (whole_->cancelled()) return;
+    Frame frame;
+    frame.header.set("said", "first_flight");
+    frame.parts.push_back(to_json(told, -1));
     send(std::move(frame), serial_);
   }
 
@@ -262,6 +289,8 @@ class StudioWorker {
       tell_image(image);
       wait_while_paused();
     };
+    settings.keep_tours = true;
+    settings.observe_first_flight = [this](const Value& told) { tell_first_flight(told); };
     settings.scan_memory = scan_memory();
     // Modules that are required while it plans, as scenes are.
     settings.observe_script = [this](const std::filesystem::path& file) {
@@ -275,6 +304,7 @@ class StudioWorker {
     if (result.mapping)
       throw InputError("a mission of kind '" + mission->kind() +
                        "' makes a map and no flight that could be drawn; lapwing run plans it");
+    keep_tours(result);
     if (result.fleet) {
       keep(mission);
       return judge_tours(result);
@@ -402,6 +432,15 @@ class StudioWorker {
     if (planned_.size() > kMostKept) planned_.pop_front();
   }
 
+  // What pages may ask about.
+  void keep_tours(const MissionResult& result) {
+    std::vector<KeptTour> tours;
+    if (result.kept) tours.push_back(*result.kept);
+    for (std::size_t t = 0; result.fleet && t < result.fleet->tours.size(); ++t)
+      if (const auto& kept = result.fleet->tours[t].kept) tours.push_back(*kept);
+    if (!tours.empty()) looks_.keep(result.obstacle_folder.string(), std::move(tours));
+  }
+
   void hear(const EditedPlan& edited) {
     if (edited.answer.grade == AnswerGrade::refused) {
       refused_ = edited.answer.message;
@@ -478,6 +517,9 @@ class StudioWorker {
   bool paused_ = false;                       // an exploration, after each image
   int steps_ = 0;                             // images that it may take all the same
   bool ended_ = false;
+
+  std::mutex sending_;  // of frames to the server
+  WorkerLooks looks_;
 };
 
 }  // namespace

@@ -10,6 +10,7 @@
 //                            more (its plan and document empty where they are those of the first)
 //                            of a drag of a scan: estimate {estimate: {} or {tours, images,
 //                            seconds, known, seen}}
+//                            of a scan: first_flight [JSON: level, images], before it is flown
 //   drop                     the solve under way ends
 //   begin_at                 the next solve begins at the flight of the plan in the first part
 //   check {layer, judge}     checked {document, mission, files} or refused {why, line, files}
@@ -17,6 +18,8 @@
 //   fly {conditions}         done {...} [samples]        of the plan document in the first part
 //   picture, export, export_lua, save_report             done {...}, or failed {why}
 //   race, stick              done {files} [state]        a race that is flown by hand
+//   voxel, slice, left_out, view {folder}   done {blobs} [members of the answer, blobs], or failed;
+//                            also while a plan is solved (worker_looks.h)
 #pragma once
 
 #include <filesystem>

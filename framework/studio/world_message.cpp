@@ -108,6 +108,19 @@ void add_views(const ScanTask& task, std::optional<std::size_t> tour, Value& lis
   }
 }
 
+// The ends of what is known, and the edge of a voxel, m.
+Value map_of(const Map& map) {
+  Value value = Value::map();
+  value.set("resolution", map.grid().resolution());
+  if (const auto bounds = map.bounds()) {
+    const VoxelKey &low = bounds->lower, &high = bounds->upper;
+    value.set("lower", place_of(map.grid().corner(low)));
+    value.set("upper", place_of({map.grid().face(high.x + 1), map.grid().face(high.y + 1),
+                                 map.grid().face(high.z + 1)}));
+  }
+  return value;
+}
+
 // What a scan was planned on, and what its images will show: the figures of `lapwing run --json`.
 Value scan_of(const Plan& plan, const ScanRecord& record, const std::vector<const Plan*>& tours) {
   const ScanTask& task = *plan.task.scan;
@@ -122,10 +135,13 @@ Value scan_of(const Plan& plan, const ScanRecord& record, const std::vector<cons
                               task.camera.focal_x, task.camera.focal_y, task.camera.principal_x,
                               task.camera.principal_y}));
   value.set("first_views", places_of(record.first_views));
+  Value& footprints = value.set("footprints", Value::list());
+  for (const GroundPolygon& polygon : record.footprints) footprints.push_back(polygon_of(polygon));
   value.set("candidates", places_of(record.candidates));
   value.set("candidate_scores", Value(Value::List(record.alone.begin(), record.alone.end())));
   value.set("seconds", Value(Value::List(record.seconds.begin(), record.seconds.end())));
   value.set("score", Value(Value::List(record.score.begin(), record.score.end())));
+  if (record.map) value.set("map", map_of(*record.map));
   value.set("areas", areas_as_value(record));
   value.set("words", areas_in_words(record));
   if (!record.prediction) return value;

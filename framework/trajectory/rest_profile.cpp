@@ -16,7 +16,8 @@ RestProfile::RestProfile(double length, const RestLimits& limits) : step_(limits
     throw InputError("a move from rest to rest needs a finite length of at least 0");
   for (const double limit : {limits.speed, limits.acceleration, limits.step})
     if (!(limit > 0) || !std::isfinite(limit))
-      throw InputError("a move from rest to rest needs a speed, an acceleration and a step above 0");
+      throw InputError(
+          "a move from rest to rest needs a speed, an acceleration and a step above 0");
   if (length == 0) return;
   using std::numbers::pi;
   const double h = limits.step;
@@ -24,8 +25,7 @@ RestProfile::RestProfile(double length, const RestLimits& limits) : step_(limits
   const double alone = std::sqrt(length * pi / (2 * limits.acceleration));
   const double slow = limits.speed * pi / (2 * limits.acceleration);  // s, to the largest speed
   rising_ = std::max(1, static_cast<int>(std::ceil(std::min(alone, slow) / h - 1e-9)));
-  even_ = std::max(
-      0, static_cast<int>(std::ceil(length / (limits.speed * h) - 1e-9)) - rising_);
+  even_ = std::max(0, static_cast<int>(std::ceil(length / (limits.speed * h) - 1e-9)) - rising_);
   const double speed = length / (h * (rising_ + even_));
   peak_ = speed * std::sin(pi / (2 * rising_)) / h;
 }

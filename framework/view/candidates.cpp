@@ -156,8 +156,27 @@ class Generator {
   // Places from the given ones; false when they are too many to be held.
   bool grow(double step) {
     places_.clear();
-    made_.blocked = made_.crowded = 0;
+    made_.blocked = made_.crowded = made_.lost_beyond = 0;
+    made_.lost.clear();
     Grid grid(s_.distance_apart, s_.allowed);
+    // Steps from the rim lead beyond the box.
+    double widest = step;
+    for (int corner = 0; corner < 8; ++corner)
+      widest = std::max(
+          widest,
+          step_at(s_.allowed.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)), step));
+    const Vector3d beyond = Vector3d::Constant(widest);
+    Grid stops(s_.distance_apart, {s_.allowed.min() - beyond, s_.allowed.max() + beyond});
+    const auto stop_at = [&](const Vector3d& p) {
+      if (stops.any_near(p, [&](int other) {
+            return (made_.lost[static_cast<std::size_t>(other)].position - p).norm() <
+                   s_.distance_apart;
+          }))
+        return;
+      if (made_.lost.size() < Candidates::kMostLost)
+        stops.add(p, static_cast<int>(made_.lost.size()));
+      lose(p, s_.allowed.contains(p) ? PlaceLoss::blocked : PlaceLoss::outside);
+    };
     std::vector<int> front;
     const auto keep = [&](const Vector3d& p) {
       front.push_back(static_cast<int>(places_.size()));
@@ -180,13 +199,24 @@ class Generator {
             return (places_[static_cast<std::size_t>(other)] - p).norm() < s_.distance_apart;
           });
           made_.crowded += crowded;
-          if (crowded || !allowed(p)) continue;
+          if (crowded) continue;
+          if (!allowed(p)) {
+            stop_at(p);
+            continue;
+          }
           if (places_.size() >= kMostPlaces) return false;
           keep(p);
         }
       }
     }
     return true;
+  }
+
+  void lose(const Vector3d& p, PlaceLoss why) {
+    if (made_.lost.size() < Candidates::kMostLost)
+      made_.lost.push_back({p, why});
+    else
+      ++made_.lost_beyond;
   }
 
   bool allowed(const Vector3d& p) {
@@ -213,13 +243,18 @@ class Generator {
       const double middle = (narrow + wide) / 2;
       (spaced(order, step, middle, wanted, left) ? wide : narrow) = middle;
     }
-    spaced(order, step, wide, wanted, left);
+    std::vector<int> kept;
+    spaced(order, step, wide, wanted, left, &kept);
+    std::vector<char> is_kept(places_.size(), 0);
+    for (const int k : kept) is_kept[static_cast<std::size_t>(k)] = 1;
+    for (std::size_t k = 0; k < places_.size(); ++k)
+      if (!is_kept[k]) lose(places_[k], PlaceLoss::thinned);
     places_ = std::move(left);
   }
 
-  // False where more than `most` are so many steps apart.
+  // False where more than `most` are so many steps apart. `kept`: the numbers of those left.
   bool spaced(const std::vector<int>& order, double step, double times, std::size_t most,
-              std::vector<Vector3d>& left) const {
+              std::vector<Vector3d>& left, std::vector<int>* kept = nullptr) const {
     throw_if_cancelled();
     left.clear();
     double widest = 0;
@@ -236,6 +271,7 @@ class Generator {
       if (left.size() >= most) return false;
       grid.add(p, static_cast<int>(left.size()));
       left.push_back(p);
+      if (kept) kept->push_back(k);
     }
     return true;
   }
@@ -247,7 +283,10 @@ class Generator {
     for (int k = 0; k < made_.given; ++k) looks_[static_cast<std::size_t>(k)].push_back(k);
     std::vector<std::size_t> open;
     for (std::size_t place = 0; place < places_.size(); ++place)
-      if (!is_viewless(s_.viewless, places_[place])) open.push_back(place);
+      if (!is_viewless(s_.viewless, places_[place]))
+        open.push_back(place);
+      else if (looks_[place].empty())
+        lose(places_[place], PlaceLoss::viewless);
     for (int round = 0; !open.empty() && !full(); ++round) {
       std::vector<std::size_t> still;
       for (const std::size_t place : open) {
@@ -258,7 +297,11 @@ class Generator {
       }
       open = std::move(still);
     }
-    for (const auto& looks : looks_) made_.places += !looks.empty();
+    for (std::size_t place = 0; place < places_.size(); ++place) {
+      made_.places += !looks_[place].empty();
+      if (looks_[place].empty() && !is_viewless(s_.viewless, places_[place]))
+        lose(places_[place], PlaceLoss::thinned);
+    }
   }
 
   bool full() const { return static_cast<int>(made_.viewpoints.size()) >= s_.most; }

@@ -43,12 +43,29 @@ struct CandidateSettings {
   int most_failed_draws = 10000;  // of those, in a row
 };
 
+// Why there is no candidate at a place.
+enum class PlaceLoss : std::uint8_t {
+  outside,   // of the box that is allowed
+  blocked,   // the body's box is not free there
+  viewless,  // it lies in a ball without views
+  thinned,   // there are more places than `most` candidates can have
+};
+struct LostPlace {
+  Eigen::Vector3d position;
+  PlaceLoss why;
+};
+
 struct Candidates {
   std::vector<Viewpoint> viewpoints;  // the given ones first
   int given = 0;
   std::int64_t blocked = 0, crowded = 0;  // places that were refused, and why
   std::int64_t grown = 0;                 // free places that were found
   std::int64_t places = 0;                // of them, those that have candidates
+  // Places where growing stopped, no two of which are nearer than `distance_apart`, and places that
+  // were left out afterwards. Of more than so many the number alone.
+  static constexpr std::size_t kMostLost = 200000;
+  std::vector<LostPlace> lost;
+  std::int64_t lost_beyond = 0;
 };
 
 // Whether a place lies in one of the balls.

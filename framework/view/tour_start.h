@@ -18,6 +18,10 @@ class ViewIslands {
 
   // Views that are joined to `view`, directly or through others, itself included.
   int joined(int view) const;
+  // Whether two views are joined so.
+  bool joins(int a, int b) const {
+    return island_[static_cast<std::size_t>(a)] == island_[static_cast<std::size_t>(b)];
+  }
   // Of the first `given` views, one at least, the first that most others are joined to.
   int best_start(int given) const;
 

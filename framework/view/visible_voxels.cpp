@@ -103,31 +103,60 @@ std::vector<VoxelKey> VisibleVoxels::keys_from(const Viewpoint& viewpoint,
   return keys;
 }
 
-std::vector<SeenVoxel> VisibleVoxels::seen_from(const Viewpoint& viewpoint) const {
-  const double edge = map_->grid().resolution();
+double VisibleVoxels::sight_range() const {
   // A ray meets a voxel at most half its diagonal before its centre.
-  const double range = std::min(settings_.range, settings_.usable_range + edge);
-  std::vector<SeenVoxel> seen;
-  for (const VoxelKey& key : keys_from(viewpoint, rays_, range)) {
-    const Vector3d towards = map_->grid().center(key) - viewpoint.position;
-    const double distance = towards.norm();
-    if (distance > settings_.usable_range) continue;
-    VoxelSight sight{static_cast<float>(distance), 0, std::nullopt};
-    if (distance > 0) {
-      sight.pixels = static_cast<float>(settings_.pinhole.focal_x * edge / distance);
-      const Vector3d direction = towards / distance;
-      if (prior_) {
-        const MeshHit hit =
-            prior_->cast({viewpoint.position, direction, distance + settings_.normal_tolerance});
-        if (hit.triangle >= 0 && std::abs(hit.distance - distance) < settings_.normal_tolerance)
-          sight.incidence = static_cast<float>(
-              std::atan2(direction.cross(hit.normal).norm(), -direction.dot(hit.normal)));
-      }
+  return std::min(settings_.range, settings_.usable_range + map_->grid().resolution());
+}
+
+std::optional<VoxelSight> VisibleVoxels::usable_sight(const Viewpoint& viewpoint,
+                                                      const VoxelKey& key) const {
+  const Vector3d towards = map_->grid().center(key) - viewpoint.position;
+  const double distance = towards.norm();
+  if (distance > settings_.usable_range) return std::nullopt;
+  VoxelSight sight{static_cast<float>(distance), 0, std::nullopt};
+  if (distance > 0) {
+    sight.pixels =
+        static_cast<float>(settings_.pinhole.focal_x * map_->grid().resolution() / distance);
+    const Vector3d direction = towards / distance;
+    if (prior_) {
+      const MeshHit hit =
+          prior_->cast({viewpoint.position, direction, distance + settings_.normal_tolerance});
+      if (hit.triangle >= 0 && std::abs(hit.distance - distance) < settings_.normal_tolerance)
+        sight.incidence = static_cast<float>(
+            std::atan2(direction.cross(hit.normal).norm(), -direction.dot(hit.normal)));
     }
-    if (sight.incidence && *sight.incidence > settings_.usable_incidence) continue;
-    seen.push_back({key, sight});
   }
+  if (sight.incidence && *sight.incidence > settings_.usable_incidence) return std::nullopt;
+  return sight;
+}
+
+std::vector<SeenVoxel> VisibleVoxels::seen_from(const Viewpoint& viewpoint) const {
+  std::vector<SeenVoxel> seen;
+  for (const VoxelKey& key : keys_from(viewpoint, rays_, sight_range()))
+    if (const auto sight = usable_sight(viewpoint, key)) seen.push_back({key, *sight});
   return seen;
+}
+
+std::optional<VoxelSight> VisibleVoxels::sight_of(const Viewpoint& viewpoint,
+                                                  const VoxelKey& voxel) const {
+  if (!counts(voxel)) return std::nullopt;
+  // Half a diagonal, and a little for rounding.
+  const double radius = 0.87 * map_->grid().resolution();
+  const Pose camera = viewpoint.camera();
+  const Vector3d towards = camera.orientation.toRotationMatrix().transpose() *
+                           (map_->grid().center(voxel) - viewpoint.position);
+  const double distance = towards.norm();
+  if (distance - radius > sight_range()) return std::nullopt;
+  std::vector<Vector3d> near;
+  if (distance > radius) {
+    const double share = radius / distance;
+    const double least = distance * std::sqrt(1 - share * share);
+    for (const Vector3d& ray : rays_)
+      if (ray.dot(towards) >= least) near.push_back(ray);
+  }
+  const auto met = keys_from(viewpoint, distance > radius ? near : rays_, sight_range());
+  if (!std::binary_search(met.begin(), met.end(), voxel)) return std::nullopt;
+  return usable_sight(viewpoint, voxel);
 }
 
 std::vector<VoxelKey> VisibleVoxels::voxels_from(const Viewpoint& viewpoint) const {

@@ -57,6 +57,8 @@ class VisibleVoxels {
 
   // In the order of keys, each once: occupied and unknown voxels of the region that are usable.
   std::vector<SeenVoxel> seen_from(const Viewpoint& viewpoint) const;
+  // The same of one voxel; nothing where `seen_from` does not list it. Much quicker.
+  std::optional<VoxelSight> sight_of(const Viewpoint& viewpoint, const VoxelKey& voxel) const;
   // The keys of all that the rays meet, usable or not.
   std::vector<VoxelKey> voxels_from(const Viewpoint& viewpoint) const;
   // The keys alone, with a smaller image of the same view: `across` pixels wide.
@@ -66,6 +68,10 @@ class VisibleVoxels {
   // m; 0 where a ray misses the region. What lies beyond does not count and need not be looked at.
   double leaves_region_after(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                              double range) const;
+  // m, of the rays of what is seen.
+  double sight_range() const;
+  // How a voxel that a ray meets is seen; nothing where that is of no use.
+  std::optional<VoxelSight> usable_sight(const Viewpoint& viewpoint, const VoxelKey& key) const;
   std::vector<VoxelKey> keys_from(const Viewpoint& viewpoint,
                                   std::span<const Eigen::Vector3d> directions_C,
                                   double range) const;

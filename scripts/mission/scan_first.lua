@@ -178,6 +178,12 @@ function M.remind(run)
   if sparse[run] then print("note: " .. sparse[run]) end
 end
 
+-- For viewers: what the images of a simulated first flight show of the ground.
+local function tell(run, poses)
+  run:first_flight { poses = poses, camera = run.options.camera, range = space.range(run),
+                     level = space.region_of(run).lower[3] }
+end
+
 -- The prior with its mesh, the poses of the first flights, the simulated surface or nil, and the
 -- exploration or nil, which has at most `seconds`. `air` is a box that is free above the safe
 -- height as well.
@@ -204,6 +210,7 @@ function M.knowledge(run, seconds, vehicle, air)
   local known, poses = new_prior(run), {}
   if surface and not (files and #o.flights == 0) then
     poses = zones.allowed(run, survey_poses(run))
+    tell(run, poses)
   end
   zones.check_home(run, space.room(run, poses), space.safe_height(run))
   if files then

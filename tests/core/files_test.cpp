@@ -269,6 +269,11 @@ TEST_F(FilesTest, ReadingNamesPathAndReason) {
   write_file_atomically(folder_ / "file", std::string(100, 'x'));
   EXPECT_EQ(reading(folder_ / "file").size(), 100u);
   EXPECT_NE(reading(folder_ / "file", 99).find("larger than 99"), std::string::npos);
+  // A large one takes no memory before it is refused.
+  fs::resize_file(folder_ / "file", std::uintmax_t{1} << 40);
+  EXPECT_EQ(reading(folder_ / "file", std::size_t{1} << 39),
+            "cannot read '" + (folder_ / "file").string() +
+                "': with 1099511627776 bytes it is larger than 549755813888 bytes");
 }
 
 }  // namespace

@@ -158,6 +158,26 @@ TEST(MapFile, EveryCutIsNoticed) {
   }
 }
 
+// Of 2 GiB, of which the file system holds one page: the sizes are told, and nothing of it is read.
+TEST(MapFile, ALargerOneThanCanBeHeldIsRefusedWithTheLargest) {
+  const std::filesystem::path path =
+      std::filesystem::path(testing::TempDir()) / "lapwing_large_map.bt";
+  SmallMap map;
+  map.import(std::vector<VoxelLeaf>{{{7, 7, 7}, 0, 0, -2.0f}});
+  write_map_file(path, map);
+  std::filesystem::resize_file(path, std::uintmax_t{2} << 30);
+  try {
+    read_map_file(path);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(), path.string() +
+                                ": the map has 2147483648 bytes, and the largest that can be read "
+                                "has 1073741824: cut it to the region of the flight, or make it "
+                                "with larger voxels");
+  }
+  std::filesystem::remove(path);
+}
+
 TEST(MapFile, WritingIsWholeOrNotAtAll) {
   const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) / "lapwing_map_file";

@@ -26,7 +26,13 @@ const char* const kGood[] = {
     R"({"type": "export_lua", "id": "l"})",
     R"({"type": "list_runs", "id": "r"})",
     R"({"type": "open_run", "id": "r", "folder": "explore_city"})",
-    R"({"type": "pace", "pace": "step"})"};
+    R"({"type": "pace", "pace": "step"})",
+    R"({"type": "voxel", "id": "v", "ray": [0, 0, 9, 0, 0, -1]})",
+    R"({"type": "voxel", "id": "v", "position": [0, 0.5, 9]})",
+    R"({"type": "slice", "id": "s", "axis": "x", "at": 2.5})",
+    R"({"type": "left_out", "id": "l"})",
+    R"({"type": "view", "id": "w", "candidate": 7})",
+    R"({"type": "view", "id": "w", "image": 7, "tour": 1})"};
 
 TEST(PageMessages, AreReadWithTheirFields) {
   for (const char* text : kGood) EXPECT_NO_THROW(page_message(text)) << text;
@@ -50,7 +56,9 @@ TEST(PageMessages, WhatIsMissingUnknownOrOfAnotherTypeIsRefused) {
       Value other = good;
       other.set(key, value.is_map() ? Value(3) : Value(Value::Map{{"x", Value(1)}}));
       EXPECT_THROW(page_message(to_json(other)), InputError) << text << key;
-      if (key == "parameters" || key == "uncertified" || key == "gust" || key == "after") continue;
+      if (key == "parameters" || key == "uncertified" || key == "gust" || key == "after" ||
+          key == "tour")
+        continue;
       Value less = good;
       std::erase_if(less.as_map(), [&](const auto& entry) { return entry.first == key; });
       EXPECT_THROW(page_message(to_json(less)), InputError) << text << key;
@@ -79,6 +87,13 @@ TEST(PageMessages, WhatIsOutOfRangeIsRefused) {
            R"({"type": "picture", "edit": 1, "time": 1, "width": 640, "height": 100000})",
            R"({"type": "picture", "edit": 1, "time": 1, "width": 0, "height": 10})",
            R"({"type": "resolve_script", "take": "none"})",
+           R"({"type": "voxel", "id": "v", "position": [0, 0, 9], "ray": [0, 0, 9, 0, 0, -1]})",
+           R"({"type": "voxel", "id": "v", "position": [0, 0]})",
+           R"({"type": "voxel", "id": "v", "position": [0, 0, 1e30]})",
+           R"({"type": "slice", "id": "s", "axis": "w", "at": 2})",
+           R"({"type": "view", "id": "w", "candidate": 1, "image": 1})",
+           R"({"type": "view", "id": "w", "candidate": 1, "tour": 1})",
+           R"({"type": "view", "id": "w", "image": -1})",
            R"({"type": "gesture", "id": "g", "base": 0, "label": "", "patch": [], "after": [3]})",
            R"({"type": "gesture", "id": "g", "base": 0, "label": "", "patch": [], "after": [""]})",
            "{\"type\": \"undo\", \"id\": \"" + long_text + "\", \"base\": 2}",

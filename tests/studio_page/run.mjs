@@ -8,6 +8,7 @@ import { chromium, openPage, startBrowser, waitGrade } from "./browser.mjs";
 import { edits } from "./cases_edit.mjs";
 import { explore } from "./cases_explore.mjs";
 import { film } from "./cases_film.mjs";
+import { look } from "./cases_look.mjs";
 import { links } from "./cases_link.mjs";
 import { painting } from "./cases_painting.mjs";
 import { race } from "./cases_race.mjs";
@@ -86,7 +87,7 @@ try {
     if (shots) await page.screenshot({ path: join(shots, `${file}.png`) });
   };
   // With servers of their own; that of the film measures times.
-  const served = Object.entries({ scan, race, painting, explore, report })
+  const served = Object.entries({ scan, look, race, painting, explore, report })
     .filter(([name]) => !only || only === name);
   await Promise.all(browsers.map(async (browser) => {
     for (let next = served.shift(); next; next = served.shift()) {

@@ -72,6 +72,35 @@ TEST(Candidates, NoneLieWhereViewsAreForbidden) {
   EXPECT_EQ(generate(s).viewpoints[0].position, kStart[0].position);
 }
 
+// Each place without candidates is told once, with why.
+TEST(Candidates, PlacesThatAreLeftOutAreToldWithWhy) {
+  const auto space = free_space_of(std::shared_ptr<const Map>(walled_room()));
+  CandidateSettings s = candidate_settings();
+  s.allowed = AlignedBox3d(Vector3d(-9, -9, 1), Vector3d(9, 9, 8));
+  s.viewless = {{Vector3d(0, 0, 5), 3}};
+  s.most = 300;
+  const Candidates made = generate(s);
+  std::map<PlaceLoss, int> counts;
+  for (const LostPlace& lost : made.lost) {
+    ++counts[lost.why];
+    const bool free = space->swept_box_free(lost.position, lost.position, s.half);
+    EXPECT_EQ(s.allowed.contains(lost.position), lost.why != PlaceLoss::outside);
+    if (lost.why == PlaceLoss::blocked)
+      EXPECT_FALSE(free);
+    else if (lost.why != PlaceLoss::outside)
+      EXPECT_TRUE(free);
+    EXPECT_EQ(lost.why == PlaceLoss::viewless,
+              (lost.position - Vector3d(0, 0, 5)).norm() <= 3 && lost.why != PlaceLoss::thinned);
+    for (const Viewpoint& v : made.viewpoints) EXPECT_NE(v.position, lost.position);
+  }
+  for (const PlaceLoss why :
+       {PlaceLoss::outside, PlaceLoss::blocked, PlaceLoss::viewless, PlaceLoss::thinned})
+    EXPECT_GT(counts[why], 0) << static_cast<int>(why);
+  EXPECT_EQ(made.lost_beyond, 0);
+  // Every free place that was found has candidates or is left out.
+  EXPECT_EQ(made.grown, made.places + counts[PlaceLoss::viewless] + counts[PlaceLoss::thinned]);
+}
+
 TEST(Candidates, BehindTheWallAreReachedRoundIt) {
   int behind = 0;
   for (const Viewpoint& v : generate(candidate_settings()).viewpoints) behind += v.position.x() > 6;

@@ -53,6 +53,38 @@ TEST(VisibleVoxels, AngleDistanceAndSizeAreThoseOfTheGeometry) {
   }
 }
 
+// Voxel by voxel the same as all at once, also of what is not seen, from near and far.
+TEST(VisibleVoxels, OneVoxelIsSeenAsAmongAll) {
+  const auto map = walled_room();
+  SightSettings s = sight_settings();
+  s.region = AlignedBox3d(Vector3d(-9, -9, 0.5), Vector3d(12, 9, 9));
+  s.across = 50;
+  s.usable_range = 14;
+  s.usable_incidence = radians(50);
+  const VisibleVoxels visible(map, wall_face(), s);
+  const VoxelGrid& grid = map->grid();
+  for (const Viewpoint& view : {kAhead, Viewpoint{{-8, -6, 8}, 0.4, -0.5},
+                                Viewpoint{{4.9, 1.6, 3}, 0.3, -0.2}, Viewpoint{{8, 0, 5}, 0, 0}}) {
+    const std::vector<SeenVoxel> all = visible.seen_from(view);
+    EXPECT_FALSE(all.empty());
+    std::size_t found = 0;
+    for (double x = -8.75; x < 12; x += 0.5)
+      for (double y = -8.75; y < 9; y += 0.5)
+        for (double z = 0.75; z < 9; z += 0.5) {
+          const VoxelKey key = grid.key({x, y, z});
+          const auto one = visible.sight_of(view, key);
+          if (!one) continue;
+          ASSERT_LT(found, all.size());
+          ASSERT_EQ(all[found].voxel, key);
+          EXPECT_EQ(all[found].sight.distance, one->distance);
+          EXPECT_EQ(all[found].sight.pixels, one->pixels);
+          EXPECT_EQ(all[found].sight.incidence, one->incidence);
+          ++found;
+        }
+    EXPECT_EQ(found, all.size());
+  }
+}
+
 TEST(VisibleVoxels, OfAPartOfTheRegionIsThatPartOfAll) {
   const auto map = walled_room();
   const std::vector<SeenVoxel> all =

@@ -3,6 +3,7 @@
 import { isPainting } from "./state/painting";
 import { cutAt, moved, placeOfItem, retimed } from "./state/edits";
 import { actionOf } from "./state/keys";
+import { isSite } from "./state/site";
 import type { Vec3 } from "./state/types";
 import type { Rate, Studio } from "./studio";
 import { byId, forgetColours, typing } from "./view/dom";
@@ -34,6 +35,7 @@ export interface Parts {
   frame(): void;
   keyframeHere(): void;
   clickMiddle(): void;
+  dropLook(): boolean;
   showFilmTab(): void;
 }
 
@@ -186,7 +188,8 @@ export class Actions {
         else parts.notices.say("Select a keyframe first.");
         return true;
       case "type":
-        if (studio.mode === "place" || studio.mode === "aim") {
+        if (studio.mode === "place" || studio.mode === "aim" ||
+            (!studio.selection && studio.mode === "orbit" && isSite(studio.document))) {
           parts.clickMiddle();
           return true;
         }
@@ -233,7 +236,7 @@ export class Actions {
     if (this.moves.drop()) return true;
     if (studio.session.dragging) studio.session.rest();
     else if (studio.mode !== "orbit") studio.setMode("orbit");
-    else studio.select(null);
+    else if (studio.selection || !this.parts.dropLook()) studio.select(null);
     return true;
   }
 

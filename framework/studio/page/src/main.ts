@@ -13,6 +13,8 @@ import { takeDropped } from "./panel/dropped";
 import { ExplorationPanel } from "./panel/exploration_panel";
 import { PaintingPanel } from "./panel/painting_panel";
 import { RaceGamePanel } from "./panel/race_game";
+import { FirstFlightPanel } from "./panel/first_flight_panel";
+import { LooksPanel } from "./panel/looks_panel";
 import { ScanPanel } from "./panel/scan_panel";
 import { Selected } from "./panel/selected";
 import { Setup } from "./panel/setup";
@@ -47,6 +49,7 @@ import { Preview, previewControls } from "./view/preview";
 import { ExplorationView } from "./view/exploration_view";
 import { PaintingView } from "./view/painting_view";
 import { RaceView } from "./view/race_view";
+import { LooksView } from "./view/looks_view";
 import { ScanView } from "./view/scan_view";
 import { SightView } from "./view/sight_view";
 import { Solids } from "./view/solids";
@@ -112,6 +115,11 @@ gizmo.controls.addEventListener("dragging-changed", () => {
 new Paths(studio, stage);
 new Gates(studio, stage);
 const scanned = new ScanView(studio, stage);
+const looks = new LooksView(studio, stage);
+looks.onCut = (plane) => {
+  scanned.cutBy(plane);
+  solids.cutBy(plane);
+};
 const explored = new ExplorationView(studio, stage);
 const sights = new SightView(studio, stage);
 new PaintingView(studio, stage);
@@ -159,8 +167,14 @@ navigation.onButton = (button) => {
 pick.onGate = (at) => list.addGate(at);
 const scan = new ScanPanel(studio, centre);
 scan.onPlace = (place) => navigation.lookAt(place);
-pick.onNothing = (ray) => {
-  const words = scanned.wordsAt(ray);
+new LooksPanel(studio, looks);
+new FirstFlightPanel(studio);
+pick.isView = ({ clientX, clientY }) => looks.viewAt(clientX, clientY) !== null;
+pick.onNothing = (ray, at) => {
+  const view = looks.viewAt(at.clientX, at.clientY);
+  if (view) return looks.choose(view);
+  // On a slice its own voxel is meant, not the surface behind it.
+  const words = looks.askVoxel(ray) ? null : scanned.wordsAt(ray);
   if (words) notices.say(words);
 };
 const exploration = new ExplorationPanel(studio);
@@ -173,6 +187,7 @@ new Actions({
   frame: () => navigation.frame(bounds()),
   keyframeHere: () => keyframeHere(studio, stage, pick),
   clickMiddle: () => pick.clickMiddle(),
+  dropLook: () => looks.drop(),
   showFilmTab: () => showTab("film"),
 });
 
@@ -327,6 +342,17 @@ Object.defineProperty(window, "lapwing", {
     get episode() { return studio.episode; },
     get live() { return studio.live?.told.images.length ?? 0; },
     get paused() { return studio.paused; },
+    get footprints() { return scanned.drawn; },
+    get firstFlight() { return session.firstFlight; },
+    get looks() {
+      const { slice, voxel, view, leftOut } = looks;
+      return { slice, voxel, view, leftOut, drawnPlaces: looks.drawnPlaces };
+    },
+    // Where a place of the world is on the page.
+    pageOf(place: Vec3) {
+      const seen = stage.onScreen(place), rect = stage.world.getBoundingClientRect();
+      return seen ? { x: rect.left + seen.x, y: rect.top + seen.y } : null;
+    },
     get game() { return game.figures; },
     get farthest() { return stage.worldCamera.far; },
     measure(on: boolean) { stage.measuring = on; },

@@ -18,7 +18,7 @@ import { standingOf, type Grade, type Standing } from "./state/grades";
 import { clamp } from "./state/vector";
 
 export type Topic = "document" | "standing" | "selection" | "time" | "mode" | "link" | "world" |
-  "flown" | "look" | "playing" | "kept" | "episode" | "sight";
+  "flown" | "look" | "playing" | "kept" | "episode" | "sight" | "draft";
 export type Mode = "orbit" | "place" | "aim" | "draw" | "camera" | "walk" | "outline" | "stroke" | "race";
 export type Rate = 0.5 | 1 | 2;
 
@@ -38,8 +38,9 @@ export class Studio {
   outlined: PolygonKind = "region";    // what a drag draws in the mode `outline`
   // Of a scan: what is drawn, and the figure whose colours the surface has.
   readonly look: { figure: Figure; views: boolean; candidates: boolean; first: boolean;
-                  rays: boolean } =
-    { figure: "accuracy_mm", views: true, candidates: false, first: false, rays: false };
+                   rays: boolean; leftOut: boolean } =
+    { figure: "accuracy_mm", views: true, candidates: false, first: false, rays: false,
+      leftOut: false };
   run: RunMessage | null = null;       // the folder of a run that is shown in place of the document
   live: LiveEpisode | null = null;     // an exploration that is being planned
   paused = false;                      // likewise
@@ -78,6 +79,7 @@ export class Studio {
         case "run": this.showRun(event.message as RunMessage); break;
         case "link": this.tell("link"); break;
         case "world": this.tell("world"); break;
+        case "first_flight": this.tell("draft"); break;
         case "flown":
           this.flown = event.message as Flown;
           this.tell("flown");

@@ -35,7 +35,7 @@ export const bindings: Binding[] = [
     text: "Delete what is selected" },
   { group: "Keyframes", keys: ["L"], action: "look",
     text: "Aim the selected keyframe by clicking, or Enter for the middle of the view" },
-  { group: "Keyframes", keys: ["Enter"], action: "type", text: "Type numbers for what is selected" },
+  { group: "Keyframes", keys: ["Enter"], action: "type", text: "Type numbers for what is selected; of a scan without a selection: click on the middle of the view" },
   { group: "Keyframes", keys: ["C"], action: "cut", text: "Cut one second at the play head" },
   { group: "World", keys: ["O"], action: "obstacle", text: "Add an obstacle" },
   { group: "World", keys: ["U"], action: "subject", text: "Add a subject" },

@@ -7,7 +7,7 @@ import { Grades, type Standing } from "./grades";
 import { tryPatch } from "./queue";
 import type { Event, Link, SessionParts, Socket } from "./session_parts";
 import type {
-  Answer, Choices, Gesture, JsonObject, MissionInfo, Option, Patch, PlanningProgress, ServerMessage,
+  Answer, Choices, FirstFlight, Gesture, JsonObject, MissionInfo, Option, Patch, PlanningProgress, ServerMessage,
   Welcome, World,
 } from "./types";
 
@@ -26,6 +26,7 @@ export class Session {
   schema: Option[] = [];
   choices: Choices = {};
   world: World = {};
+  firstFlight: FirstFlight | null = null;     // of a pattern that was edited since it was flown
   revision = 0;
   canUndo = false;
   canRedo = false;
@@ -119,6 +120,7 @@ export class Session {
     this.endDrag();
     this.moment();
     this.send({ type: "rest" });
+    this.draft(null);
     this.tell({ what: "document" });
   }
 
@@ -294,7 +296,9 @@ export class Session {
       case "answer": return this.answered(message);
       case "refused":
       case "failed": return this.refused(message);
+      case "first_flight": return this.drafted(message);
       case "world":
+        this.draft(null);
         this.world = message;
         return this.tell({ what: "world" });
       case "progress":
@@ -311,6 +315,10 @@ export class Session {
       case "pace":
       case "run":
       case "runs": return this.tell({ what: message.type, message });
+      case "voxel":
+      case "slice":
+      case "left_out":
+      case "view": return this.tell({ what: "look", message });
       case "worker": return this.tell({ what: "worker", message });
       case "remark": return this.tell({ what: "note", text: message.message });
       case "script_changed":
@@ -343,6 +351,7 @@ export class Session {
     this.schema = optionsIn(message.schema);
     this.choices = choicesIn(message.schema, message.choices);
     if (message.world) this.world = message.world;
+    this.draft(null);
     this.link = "open";
     this.hungUp = 0;
     this.greeted = false;
@@ -389,6 +398,18 @@ export class Session {
     this.nextStep();
   }
 
+  // What another tab drags is not shown here.
+  private drafted(message: FirstFlight): void {
+    const mine = message.tab === this.parts.tab && message.edit === this.drag?.edit;
+    if (message.edit === null || mine) this.draft(message);
+  }
+
+  private draft(flight: FirstFlight | null): void {
+    if (flight === this.firstFlight) return;
+    this.firstFlight = flight;
+    this.tell({ what: "first_flight" });
+  }
+
   // How far planning has come, of the document as it is and until it has an answer.
   planning(): PlanningProgress | null {
     const { progress } = this;
@@ -405,6 +426,7 @@ export class Session {
   private refused(message: ServerMessage & { type: "refused" | "failed" }): void {
     if (message.id !== undefined && this.parts.queue.settle(message.id)) {
       this.steps = [];
+      this.draft(null);
       this.moment();
     }
     this.tell({ what: "document" });

@@ -21,7 +21,8 @@ export type Link = "connecting" | "open" | "lost";
 
 export interface Event {
   what: "link" | "welcome" | "document" | "standing" | "world" | "note" | "flown" | "picture" |
-    "wrote" | "raced" | "estimate" | "image" | "pace" | "run" | "runs" | "script" | "worker" | "settled";
+    "wrote" | "raced" | "estimate" | "image" | "pace" | "run" | "runs" | "look" | "first_flight" |
+    "script" | "worker" | "settled";
   message?: ServerMessage;
   text?: string;
 }

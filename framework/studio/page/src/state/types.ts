@@ -162,10 +162,12 @@ export interface ScanWorld {
            tour?: number }[];    // of several batteries: whose, from 0
   image: number[];             // width, height, focal lengths and principal point, pixels
   first_views: Vec3[];
+  footprints?: [number, number][][];    // of those, on the region's lowest level
   candidates: Vec3[];
   candidate_scores?: number[];   // of each by itself
   seconds: number[];
   score: number[];
+  map?: { resolution: number; lower?: Vec3; upper?: Vec3 };    // of what was known first, m
   areas: JsonObject;
   words: string;
   prediction?: JsonObject;
@@ -300,6 +302,73 @@ export interface Raced {
   files?: string[];
 }
 
+// A first flight that is not flown yet.
+export interface FirstFlight {
+  type: "first_flight";
+  edit: number | null;
+  tab: string | null;
+  level: number;                 // m, of the ground
+  images: { position: Vec3; footprint: [number, number][] }[];
+}
+
+// Answers to questions about the scan on display.
+export interface VoxelAnswer {
+  type: "voxel";
+  id: string;
+  key: [number, number, number];
+  middle: Vec3;
+  edge: number;
+  state: "unknown" | "free" | "occupied" | "between";
+  log_odds: number;
+  observations: number | null;   // null: the map does not count them
+  weight: number;
+  share: number;                 // what all images tell of it
+  images: { tour?: number; number: number; distance: number; pixels: number; mm_per_pixel: number;
+            incidence_deg?: number; told: number }[];
+}
+
+export interface SliceAnswer {
+  type: "slice";
+  id: string;
+  axis: "x" | "y" | "z";
+  at: number;                    // m, middle of the layer
+  edge: number;                  // of a voxel
+  level: number;                 // a cell has 2^level voxels either way
+  lower: [number, number];
+  columns: number;
+  rows: number;
+  counts: Record<"unknown" | "free" | "occupied" | "between", number>;   // voxels
+  clamps: [number, number];      // log odds
+  cells: string;                 // blob, as looks.ts reads it
+}
+
+export type LeftOutReason = "outside" | "obstacle" | "unknown" | "close" | "no_fly" | "flight_zone" |
+  "pilot" | "forbidden" | "thinned" | "nothing" | "apart" | "budget" | "not_chosen";
+
+export interface LeftOutAnswer {
+  type: "left_out";
+  id: string;
+  reasons: { reason: LeftOutReason; count: number }[];
+  beyond: number;                // places that are not listed
+  places: string;                // blob
+}
+
+export interface ViewAnswer {
+  type: "view";
+  id: string;
+  candidate: number;             // from 0
+  position: Vec3;
+  yaw: number;
+  pitch: number;
+  score: number;                 // by itself
+  ways: { candidate: number; seconds: number; points: Vec3[] }[];
+  voxels: number;
+  told: string;                  // blob: the voxels and what it tells of them
+  picture: string;               // blob: PNG
+}
+
+export type LookAnswer = VoxelAnswer | SliceAnswer | LeftOutAnswer | ViewAnswer;
+
 export interface PlanningProgress {
   type: "progress";
   revision: number;
@@ -320,6 +389,8 @@ export type ServerMessage =
   | RunMessage
   | { type: "runs"; id: string; folders: string[] }
   | { type: "pace"; paused: boolean }
+  | LookAnswer
+  | FirstFlight
   | ({ type: "world" } & World)
   | { type: "refused"; id?: string; edit?: number; why: string }
   | { type: "failed"; id?: string; edit?: number; why: string }

@@ -34,7 +34,7 @@ export class Pick {
       this.down = event;
       if (studio.mode === "draw") return this.draw(event);
       if (studio.mode === "outline") return this.outline(event);
-      const time = studio.mode === "orbit" ? this.pathTime(event) : null;
+      const time = studio.mode === "orbit" && !this.isView(event) ? this.pathTime(event) : null;
       if (time !== null) this.alongPath(event, time);
     }, { capture: true });
     stage.world.addEventListener("pointerup", (event) => {
@@ -161,7 +161,9 @@ export class Pick {
   }
 
   // A click on nothing that can be selected.
-  onNothing: (ray: THREE.Ray) => void = () => undefined;
+  onNothing: (ray: THREE.Ray, at: { clientX: number; clientY: number }) => void = () => undefined;
+  // Whether a view is there, which a click is about, not the path.
+  isView: (at: { clientX: number; clientY: number }) => boolean = () => false;
   // A click of a race places a gate.
   onGate: ((at: Vec3) => void) | null = null;
 
@@ -174,7 +176,7 @@ export class Pick {
     // Only what the document has can be selected.
     const listed = solid !== null && solid.index < entries(studio.document, "obstacles").length;
     studio.select(listed ? { kind: "obstacle", index: solid.index } : null);
-    if (!listed) this.onNothing(this.stage.rayAt(event.clientX, event.clientY));
+    if (!listed) this.onNothing(this.stage.rayAt(event.clientX, event.clientY), event);
   }
 
   // The same without a mouse: the middle of the view is meant.

@@ -3,7 +3,8 @@
 // surface in the colours of what the images will show of it.
 import * as THREE from "three";
 import { colourOf, figuresInWords, predictionIn, shadeOf, type Prediction } from "../state/prediction";
-import { baked } from "./solids";
+import { baked, cutMaterial } from "./solids";
+import { footprintRuns } from "../state/first_flight";
 import { pathOf } from "../state/samples";
 import { frustum, isSite, prismLines, regionsOf, viewAtTime, viewsOf } from "../state/site";
 import type { ScanWorld, Vec3 } from "../state/types";
@@ -21,6 +22,7 @@ export class ScanView {
   private readonly region = new Ribbon("solid", 2);
   private readonly views = new Ribbon("thin", 3);
   private readonly first = new Ribbon("dotted", 2);
+  private readonly footprints = new Ribbon("thin", 2);
   private readonly now = new Ribbon("solid", 3);     // the view at the play head
   private readonly others = new Ribbon("thin", 2);   // tours beside the one that is shown
   private readonly candidates = new THREE.Points(
@@ -36,7 +38,7 @@ export class ScanView {
   onSurface: () => void = () => undefined;
 
   constructor(private readonly studio: Studio, private readonly stage: Stage) {
-    for (const ribbon of [this.region, this.views, this.first, this.others, this.now]) {
+    for (const ribbon of [this.region, this.views, this.first, this.footprints, this.others, this.now]) {
       stage.tools.add(ribbon.mesh);
       stage.onResize((width, height) => ribbon.resize(width, height));
     }
@@ -47,6 +49,7 @@ export class ScanView {
     stage.scene.add(this.surface);
     new Lighter(stage, this.surface);
     studio.on(["document", "world", "look"], () => this.draw());
+    studio.on(["world", "look", "draft"], () => this.drawFootprints());
     studio.on(["look"], () => this.paint());
     studio.on(["standing"], () => this.drawTours());
     studio.on(["standing", "world", "time", "look"], () => this.drawNow());
@@ -73,6 +76,11 @@ export class ScanView {
     return box;
   }
 
+  // What is cut away of the surface; null: nothing.
+  cutBy(plane: THREE.Plane | null): void {
+    cutMaterial(this.surface.material, plane);
+  }
+
   // The nearest triangle of the surface on a ray, in words.
   wordsAt(ray: THREE.Ray): string | null {
     if (!this.prediction || !this.surface.visible) return null;
@@ -91,6 +99,7 @@ export class ScanView {
     this.region.paint(palette.chosen);
     this.views.paint(palette.ink, 0.8);
     this.first.paint(palette.step);
+    this.footprints.paint(palette.guess, 0.6);
     this.others.paint(palette.converged, 0.7);
     this.now.paint(palette.chosen);
     this.tint();
@@ -122,6 +131,19 @@ export class ScanView {
     this.fetch(scan?.surface ?? "");
     this.stage.invalidate();
   }
+
+  // Of a flight that is being edited they are always drawn.
+  private drawFootprints(): void {
+    const { look, session } = this.studio;
+    const draft = session.firstFlight;
+    const runs = draft || look.first ? footprintRuns(draft, this.scan) : [];
+    this.drawn = runs.length;
+    this.footprints.setRuns(runs, 1);
+    this.stage.invalidate();
+  }
+
+  // Footprints of the first flight that are drawn.
+  drawn = 0;
 
   private drawNow(): void {
     const { scan, studio } = this;

@@ -67,6 +67,14 @@ function meshOf(seeThrough: boolean): THREE.Mesh<THREE.BufferGeometry, THREE.Mes
   return mesh;
 }
 
+// Cuts away what is on the negative side of a plane; null: nothing.
+export function cutMaterial(material: THREE.Material, plane: THREE.Plane | null): void {
+  const had = material.clippingPlanes?.[0] ?? null;
+  if (had === plane || (had && plane && had.equals(plane))) return;
+  if ((had === null) !== (plane === null)) material.needsUpdate = true;
+  material.clippingPlanes = plane ? [plane] : null;
+}
+
 export class Solids {
   readonly group = new THREE.Group();
   readonly opaque = meshOf(false);
@@ -98,6 +106,11 @@ export class Solids {
     this.colours = colours;
     this.merge();
     this.drawSubjects(this.time);
+  }
+
+  // What is cut away of things that hide others; null: nothing.
+  cutBy(plane: THREE.Plane | null): void {
+    cutMaterial(this.opaque.material as THREE.Material, plane);
   }
 
   // Triangles of an obstacle that only the server can draw.

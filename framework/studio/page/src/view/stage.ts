@@ -54,6 +54,7 @@ export class Stage {
       canvas, antialias: !drawnInSoftware(), stencil: false, alpha: false,
     });
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
+    this.renderer.localClippingEnabled = true;
     this.renderer.setScissorTest(true);
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
     this.worldCamera.layers.enable(1);    // WORLD of solids.ts

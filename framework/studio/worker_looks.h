@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Answers what pages ask about scans that were planned: a voxel, a slice of the map, places that
+// were left out, a view. On a thread of its own, so that no plan is waited for. Internal to this
+// room.
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "framework/mission/scan_look.h"
+#include "framework/studio/frames.h"
+
+namespace lapwing {
+
+class WorkerLooks {
+ public:
+  // `send` is called on the own thread, with a frame and its serial.
+  using Send = std::function<void(Frame answer, std::int64_t serial)>;
+  WorkerLooks(Send send, int threads);
+  ~WorkerLooks();
+  WorkerLooks(const WorkerLooks&) = delete;
+
+  // Whether a frame that asks for this is to be given to `ask`.
+  static bool answers(const std::string& what);
+  // The tours of the plan whose files lie in this folder, from now on. The last few plans are kept;
+  // beside a large one none.
+  void keep(const std::string& folder, std::vector<KeptTour> tours);
+  void ask(Frame question);
+
+ private:
+  struct Kept {
+    std::string folder;
+    std::vector<KeptTour> tours;
+  };
+
+  void work();
+  Frame answer(const Frame& question) const;
+  std::vector<KeptTour> tours_of(const std::string& folder) const;
+
+  Send send_;
+  int threads_;
+  mutable std::mutex mutex_;  // of what follows
+  std::condition_variable changed_;
+  std::deque<Frame> waiting_;
+  std::deque<Kept> kept_;  // the newest last
+  bool ended_ = false;
+  std::thread thread_;
+};
+
+}  // namespace lapwing
