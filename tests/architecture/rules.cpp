@@ -49,7 +49,7 @@ const std::map<std::string, Names>& rooms() {
       {"symbolic", {"geometry", "shape", "trajectory", "vehicle", "problem"}},
       {"solve", {"geometry", "shape", "trajectory", "vehicle", "problem"}},
       {"view", {"geometry", "map", "path"}},
-      {"explore", {"geometry", "map", "view", "path"}},
+      {"explore", {"geometry", "trajectory", "map", "view", "path"}},
       {"verify", {"geometry", "trajectory", "vehicle", "map"}},
       {"export",
        {"geometry", "picture", "shape", "trajectory", "vehicle", "verify", "map",  // limits
