@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "framework/core/parallel.h"
 #include "framework/mission/environment_space.h"
@@ -13,11 +14,18 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Zones of one side, with the margin of all.
-std::unique_ptr<FreeSpace> zones_of(const FlightRules& rules, Side side) {
-  Environment some = rules.zones;
-  std::erase_if(some.obstacles, [&](const Obstacle& zone) { return zone.side != side; });
-  return some.obstacles.empty() ? nullptr : free_space_of(some, {}, 0);
+// Of the zones that forbid a place the one that leaves it least room.
+LeftOutReason side_of_zone(const FlightRules& rules, const Vector3d& p) {
+  double least = std::numeric_limits<double>::infinity();
+  LeftOutReason why = LeftOutReason::no_fly;
+  for (const Obstacle& zone : rules.zones.obstacles) {
+    const bool inside = zone.side == Side::keep_inside;
+    const double room = (inside ? -1 : 1) * zone.shape->distance(p, nullptr);
+    if (room >= least) continue;
+    least = room;
+    why = inside ? LeftOutReason::flight_zone : LeftOutReason::no_fly;
+  }
+  return why;
 }
 
 // Why the vehicle's box cannot be at a place.
@@ -27,9 +35,8 @@ class PlaceJudge {
       : work_(work),
         map_(*work.prior->mapping.map),
         known_(free_space_of(std::shared_ptr<const Map>(work.prior->mapping.map))),
-        mesh_(free_space_of(work.prior->mesh)),
-        closed_(zones_of(*work.rules, Side::keep_out)),
-        open_(zones_of(*work.rules, Side::keep_inside)) {
+        mesh_(free_space_of(work.prior->mesh)) {
+    if (!work.rules->zones.obstacles.empty()) zones_ = free_space_of(work.rules->zones, {}, 0);
     if (work.rules->pilot) pilot_ = in_sight_of(work.prior->mapping.map, *work.rules->pilot);
   }
 
@@ -41,8 +48,7 @@ class PlaceJudge {
     if (!fits(*known_)) return LeftOutReason::unknown;
     const Vector3d wider = work_.body + Vector3d::Constant(work_.mesh_room);
     if (!mesh_->swept_box_free(p, p, wider)) return LeftOutReason::close;
-    if (closed_ && !fits(*closed_)) return LeftOutReason::no_fly;
-    if (open_ && !fits(*open_)) return LeftOutReason::flight_zone;
+    if (zones_ && !fits(*zones_)) return side_of_zone(*work_.rules, p);
     if (pilot_ && !fits(*pilot_)) return LeftOutReason::pilot;
     throw Error("a place was left out that is free");
   }
@@ -67,7 +73,7 @@ class PlaceJudge {
 
   const ScanWork& work_;
   const Map& map_;
-  std::unique_ptr<FreeSpace> known_, mesh_, closed_, open_, pilot_;
+  std::unique_ptr<FreeSpace> known_, mesh_, zones_, pilot_;
 };
 
 // Of a candidate that no tour takes an image of.

@@ -167,14 +167,14 @@ class Generator {
           step_at(s_.allowed.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)), step));
     const Vector3d beyond = Vector3d::Constant(widest);
     Grid stops(s_.distance_apart, {s_.allowed.min() - beyond, s_.allowed.max() + beyond});
+    std::vector<Vector3d> stopped;
     const auto stop_at = [&](const Vector3d& p) {
       if (stops.any_near(p, [&](int other) {
-            return (made_.lost[static_cast<std::size_t>(other)].position - p).norm() <
-                   s_.distance_apart;
+            return (stopped[static_cast<std::size_t>(other)] - p).norm() < s_.distance_apart;
           }))
         return;
-      if (made_.lost.size() < Candidates::kMostLost)
-        stops.add(p, static_cast<int>(made_.lost.size()));
+      stops.add(p, static_cast<int>(stopped.size()));
+      stopped.push_back(p);
       lose(p, s_.allowed.contains(p) ? PlaceLoss::blocked : PlaceLoss::outside);
     };
     std::vector<int> front;

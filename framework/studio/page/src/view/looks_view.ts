@@ -72,6 +72,7 @@ export class LooksView {
       if (what === "world") this.forget();
       const judged = message?.type === "answer" && message.edit === null &&
         ["converged", "certified", "rejected"].includes(message.grade);
+      if (what === "welcome") this.waiting = false;      // what was asked before is lost
       if (what === "welcome" || (what === "standing" && judged)) this.refresh();
     });
     studio.on(["look"], () => this.paint());
