@@ -195,6 +195,11 @@ void StudioSession::show_again(const Remembered& shown) {
 
 void StudioSession::solver_started() {
   if (!solve_ || solve_->rank >= 2) return;
+  solve_->images.clear();  // they are taken again
+  if (solve_->paused) {
+    solve_->paused = false;
+    tell_all(pace_text());
+  }
   if (solve_->crashes <= 1) return solver_->send(solve_->frame);
   Frame refused;
   refused.header.set("serial", solve_->serial);
@@ -210,6 +215,7 @@ void StudioSession::answered(Frame frame) {
   if (rank < solve_->rank || (rank == solve_->rank && rank > 0)) return;  // late, or said again
   if (rank == solve_->rank) solve_->answers.pop_back();
   solve_->rank = rank;
+  if (rank > 0) solve_->images.clear();  // the answer has them
   solve_->answers.push_back(frame);
   if (!solve_->held) deliver(solve_->answers.back());
   drag_on();

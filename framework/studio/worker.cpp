@@ -98,7 +98,7 @@ class StudioWorker {
     const std::lock_guard lock(mutex_);
     if (what == "pace") {
       paused_ = frame.header.at("paused").as_boolean();
-      steps_ += frame.header.at("step").as_boolean();
+      steps_ = paused_ ? steps_ + frame.header.at("step").as_boolean() : 0;
     } else if (what == "solve" || what == "drop") {
       end_solve();
       solve_.reset();

@@ -942,6 +942,17 @@ TEST_F(Session, ImagesAreToldInOrderAndPlanningCanWait) {
   say(*c, R"({"type": "pace", "pace": "pause"})");
   EXPECT_TRUE(c->of_type("image").empty());
   EXPECT_TRUE(c->of_type("pace").empty());
+  // A process that crashed takes its images again, and does not wait.
+  say(*c, gesture("h", 1, {change("margin", 4)}));
+  const Frame again = solver_.frames.back();
+  check_all();
+  taken(again, 1);
+  say(*c, R"({"type": "pace", "pace": "pause"})");
+  EXPECT_EQ(c->last("pace").at("paused"), Value(true));
+  session_->crashed(WorkerRole::solver, "killed");
+  session_->started(WorkerRole::solver);
+  EXPECT_EQ(c->last("pace").at("paused"), Value(false));
+  EXPECT_TRUE(page("d")->of_type("image").empty());
 }
 
 }  // namespace
