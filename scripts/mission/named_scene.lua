@@ -1,8 +1,8 @@
 -- SPDX-License-Identifier: Apache-2.0
 -- Makes the scene of the options `scene`, `scene_seed` and, if the mission kind has
 -- it, `scene_districts` (scripts/scene).
-local SCENES = "arcade, church, courtyard, district, downtown, grasslands, office, street, "
-               .. "suburb, towers or town"
+local SCENES = "arcade, church, courtyard, depot, district, downtown, grasslands, mine, office, "
+               .. "street, suburb, towers or town"
 
 return function(run)
   local o = run.options

@@ -6,6 +6,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/files.h"
+#include "framework/core/json.h"
 #include "framework/map/plain_map.h"
 #include "plugins/utilities/learned/fit.h"
 #include "plugins/utilities/learned/model_file.h"
@@ -14,6 +15,7 @@ namespace lapwing {
 namespace {
 
 using namespace learned;
+namespace fs = std::filesystem;
 
 RayNetworkShape little() {
   RayNetworkShape shape;
@@ -306,6 +308,27 @@ TEST(LearnedRays, ModelsOfBothNetworksAreToldApart) {
   fixture.request.checkpoint = fixture.folder / "b.checkpoint";
   const std::string other = refusal([&] { fixture.run(); });
   EXPECT_NE(other.find("holds samples of another input"), std::string::npos) << other;
+}
+
+// Of three rounds of its recipe, each begun with the model of the one before; no world that is
+// validated or judged by is among those that it was trained in.
+TEST(LearnedRays, TheShippedModelIsThatOfItsRecipe) {
+  const fs::path folder = fs::path(LAPWING_SOURCE_DIR) / "plugins/utilities/learned";
+  const Model model = read_model(folder / "learned.model");
+  EXPECT_TRUE(model.ray_network(folder / "learned.model") == RayNetworkShape{});
+  EXPECT_EQ(model.mapping.at("resolution").as_number(), 0.4);
+  EXPECT_LT(fs::file_size(folder / "learned.model"), 4u << 20);
+  const std::string log = read_file(folder / "learned.log");
+  const Value* from = &model.provenance;
+  for (int round = 3; round >= 1; --round) {
+    ASSERT_NE(from, nullptr) << round;
+    const std::string rho = to_json(from->at("validation_rho"), -1);
+    EXPECT_NE(log.find("\"validation_rho\":" + rho), std::string::npos) << rho;
+    for (const Value& world : from->at("worlds").as_list())
+      EXPECT_EQ(world.as_text().find(" 9"), std::string::npos) << world.as_text();
+    from = from->find("begin");
+  }
+  EXPECT_EQ(from, nullptr);
 }
 
 }  // namespace
