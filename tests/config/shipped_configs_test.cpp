@@ -23,8 +23,8 @@ const std::map<std::string, std::set<std::string>> kMaySet = {
     {"scan", {"resolution", "effort", "surface", "candidates", "motions", "information"}},
     {"explore", {"steps", "compare"}},
 };
-const std::set<std::string> kFilesOfThings = {"vehicles", "cameras",
-                                              "reproduce"};  // no options of missions
+const std::set<std::string> kFilesOfThings = {"vehicles", "cameras", "reproduce",
+                                              "train"};  // no options of missions
 
 TEST(ShippedConfigurations, SetNothingThatOnlyTheUserKnows) {
   std::size_t seen = 0;
