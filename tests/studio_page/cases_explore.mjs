@@ -52,8 +52,8 @@ export const explore = (browser, shot) => served(browser, shot, {
   await page.waitForSelector("#compare-table td");
   const { start } = (await studioState(page)).document;
   await page.click("#place-start");
-  const { x, y } = await centreOf(page, "#world");
-  await page.mouse.click(x - 120, y + 90);
+  const { x, y } = await page.evaluate((place) => window.lapwing.pageOf(place), start);
+  await page.mouse.click(x - 25, y + 5);
   await waitRevision(page, revision + 2);
   const next = (await studioState(page)).document.start;
   assert.ok(Math.hypot(next[0] - start[0], next[1] - start[1]) > 1, `${next}`);
