@@ -49,11 +49,12 @@ TEST_F(ExploringFigures, TheLearnedUtilityComesNextToTheOracle) {
       EXPECT_GT(learned, relative(seeing, world, other)) << world << " " << other;
     EXPECT_GT(learned, relative(blind, world, "learned") + 0.1) << world;
     EXPECT_GT(learned, 0.6) << world;
-    for (const char* other : {"learned", "frontier", "average_entropy", "proximity_count"})
+    // The greedy oracle is not the best that there is (reading 5.7): `learned` may be above it.
+    for (const char* other : {"frontier", "average_entropy", "proximity_count"})
       EXPECT_LT(efficiency(seeing, world, other), efficiency(seeing, world, "oracle")) << other;
     mean += learned / 2;
   }
-  EXPECT_GT(mean, 0.75);
+  EXPECT_GT(mean, 0.85);
 }
 
 // The readme's own episodes, from the same starts and with true depth: fewer or shorter ones tell
@@ -65,7 +66,7 @@ TEST_F(ExploringFigures, NoiseAndStereoCostLittle) {
   const std::string against = "--against '" + (folder_ / "clear").string() + "'";
   int count = 0;
   for (const auto& [camera, least] : {std::pair{"--dropped 0.4 --sigma 0.2", 0.95},
-                                      {"--dropped 0.4 --sigma 1", 0.9},
+                                      {"--dropped 0.4 --sigma 1", 0.8},
                                       {"--stereo 0.5", 0.95}}) {
     const Rows rows = evaluate(flown + camera + " " + against, "noisy" + std::to_string(++count));
     const Value& all = rows.at({"all", "learned"});
