@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "framework/app/child_command.h"
+#include "framework/app/exploration_worlds.h"
 #include "framework/app/interruption.h"
 #include "framework/app/item_command.h"
 #include "framework/app/train_command.h"
@@ -13,6 +14,7 @@
 #include "framework/core/json.h"
 #include "framework/core/number_text.h"
 #include "framework/core/visible_text.h"
+#include "framework/explore/trainable.h"
 #include "framework/study/training_recipe.h"
 
 namespace lapwing {
@@ -38,6 +40,7 @@ class RecipeRun {
       throw InputError("'" + request_.target.string() +
                        "' exists: choose another name, or delete it");
     require_writable(request_.target);
+    require_known();
     const FolderClaim claim(work_);
     claim_version();
     make_samples(recipe_.validation, "validation", "");
@@ -64,6 +67,25 @@ class RecipeRun {
   }
 
  private:
+  // What is named, before anything is flown.
+  void require_known() const {
+    const Registry registry = invocation_.registry();
+    registry.find(ViewUtility::kKind, recipe_.utility);
+    const auto* trainable = static_cast<const Trainable*>(
+        registry.extension(ViewUtility::kKind, recipe_.utility, kTrainable));
+    if (!trainable) throw InputError("utility '" + recipe_.utility + "' is not a trained utility");
+    const auto require = [&](const RecipeSamples& line) {
+      if (line.explorer != TrainingRecipe::kItself)
+        registry.find(ViewUtility::kKind, line.explorer);
+      for (const std::string& world : line.worlds()) require_world(world_names(world).front(), "");
+    };
+    for (const RecipeSamples& line : recipe_.validation) require(line);
+    for (const RecipeRound& round : recipe_.rounds) {
+      for (const RecipeSamples& line : round.samples) require(line);
+      check(trainable->fit_parameters(), round.fit);
+    }
+  }
+
   fs::path in_work(const std::string& name) const { return work_ / name; }
 
   // All in the folder is of one recipe, program, seed and share.

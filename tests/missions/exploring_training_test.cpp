@@ -134,6 +134,19 @@ rounds:
   EXPECT_EQ(read_file(folder_ / "a.model"), whole);
   EXPECT_EQ(train("b.model", "--hours 3"), 2);
   EXPECT_THAT(read_file(errors), testing::HasSubstr("--hours: expected above 0 and at most 2"));
+  // What is named is known before anything is flown.
+  const std::string text = read_file(recipe);
+  for (const auto& [part, other, expected] :
+       {std::tuple{"explorer: frontier", "explorer: frontir", "frontir"},
+        {"scenes: [depot]", "scenes: [depott]", "depott"},
+        {"width: 8", "wdth: 8", "wdth"}}) {
+    std::string wrong = text;
+    wrong.replace(wrong.find(part), std::string(part).size(), other);
+    write_file_atomically(recipe, wrong);
+    EXPECT_EQ(train("b.model", "--hours 1"), 2) << other;
+    EXPECT_THAT(read_file(errors), testing::HasSubstr(expected));
+    EXPECT_FALSE(fs::exists(folder_ / "b.model.training")) << other;
+  }
   fs::remove(recipe);
   EXPECT_EQ(train("b.model", "--hours 1"), 2);
   EXPECT_THAT(read_file(errors), testing::HasSubstr("tiny.yaml"));
