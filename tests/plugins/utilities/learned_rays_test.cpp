@@ -310,7 +310,7 @@ TEST(LearnedRays, ModelsOfBothNetworksAreToldApart) {
   EXPECT_NE(other.find("holds samples of another input"), std::string::npos) << other;
 }
 
-// Of three rounds of its recipe, each begun with the model of the one before; no world that is
+// Of four rounds of its recipe, each begun with the model of the one before; no world that is
 // validated or judged by is among those that it was trained in.
 TEST(LearnedRays, TheShippedModelIsThatOfItsRecipe) {
   const fs::path folder = fs::path(LAPWING_SOURCE_DIR) / "plugins/utilities/learned";
@@ -320,7 +320,7 @@ TEST(LearnedRays, TheShippedModelIsThatOfItsRecipe) {
   EXPECT_LT(fs::file_size(folder / "learned.model"), 4u << 20);
   const std::string log = read_file(folder / "learned.log");
   const Value* from = &model.provenance;
-  for (int round = 3; round >= 1; --round) {
+  for (int round = 4; round >= 1; --round) {
     ASSERT_NE(from, nullptr) << round;
     const std::string rho = to_json(from->at("validation_rho"), -1);
     EXPECT_NE(log.find("\"validation_rho\":" + rho), std::string::npos) << rho;
