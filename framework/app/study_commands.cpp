@@ -215,7 +215,7 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
     request.target = path;
   })->required();
   add_text(*all, "--hours", "H",
-           "time that may be used, in hours of two idle cores; default: 6, all of the recipe",
+           "share of the recipe's seeds, as hours of those that it states; default: all",
            [&](const std::string& text) { request.hours = read_number("--hours", text); });
   add_text(*all, "--recipe", "FILE", "another recipe; default: that of the utility",
            [&](const std::string& path) { request.recipe = path; });

@@ -22,15 +22,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
+TrainingRecipe recipe_of(const TrainRequest& request) {
+  const fs::path shipped = shipped_folder("configs") / "train" / (request.utility + ".yaml");
+  if (request.recipe.empty() && !fs::exists(shipped))
+    throw InputError("there is no recipe for utility '" + request.utility +
+                     "': name one with --recipe FILE");
+  const TrainingRecipe whole = read_recipe(request.recipe.empty() ? shipped : request.recipe);
+  return whole.within(request.hours.value_or(whole.hours));
+}
+
 class RecipeRun {
  public:
   RecipeRun(const TrainRequest& request, const Invocation& invocation)
       : request_(request),
         invocation_(invocation),
-        recipe_(read_recipe(request.recipe.empty()
-                                ? shipped_folder("configs") / "train" / (request.utility + ".yaml")
-                                : request.recipe)
-                    .within(request.hours)),
+        recipe_(recipe_of(request)),
         work_(request.target.string() + ".training") {}
 
   ExitStatus run() {
@@ -39,6 +45,9 @@ class RecipeRun {
     if (!request_.resume && fs::exists(request_.target))
       throw InputError("'" + request_.target.string() +
                        "' exists: choose another name, or delete it");
+    if (!request_.resume && fs::exists(log_file()))
+      throw InputError("'" + log_file().string() +
+                       "' exists: choose another name for the model, or delete it");
     require_writable(request_.target);
     require_known();
     const FolderClaim claim(work_);
@@ -51,8 +60,7 @@ class RecipeRun {
       make_samples(recipe_.rounds[k].samples, name, model);
       model = fit(k, name, model, log);
     }
-    std::string log_file = request_.target.stem().string() + ".log";
-    write_file_atomically(request_.target.parent_path() / log_file, log);
+    write_file_atomically(log_file(), log);
     write_file_atomically(request_.target, read_file(model));
     if (invocation_.json) {
       Value object = Value::map();
@@ -83,9 +91,14 @@ class RecipeRun {
     for (const RecipeRound& round : recipe_.rounds) {
       for (const RecipeSamples& line : round.samples) require(line);
       check(trainable->fit_parameters(), round.fit);
+      for (const char* input : {"rays", "grid"})
+        if (round.fit.find(input))
+          throw InputError(std::string("fit: a recipe uses the standard input of its network; '") +
+                           input + "' cannot be set");
     }
   }
 
+  fs::path log_file() const { return request_.target.string() + ".log"; }
   fs::path in_work(const std::string& name) const { return work_ / name; }
 
   // All in the folder is of one recipe, program, seed and share.
@@ -94,7 +107,7 @@ class RecipeRun {
     stated.set("format", 1);
     stated.set("program", std::string("lapwing ") + program_version());
     stated.set("recipe", recipe_.checksum);
-    stated.set("hours", request_.hours);
+    stated.set("hours", request_.hours.value_or(recipe_.hours));
     Value& mapping = stated.set("mapping", Value::list());
     for (const std::string& entry : request_.mapping) mapping.push_back(entry);
     stated.set("seed", static_cast<std::int64_t>(invocation_.seed));

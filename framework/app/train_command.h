@@ -23,7 +23,7 @@ struct TrainRequest {
   bool resume = false;                            // fit, all
   double sigma = 0, dropped = 0;                  // dataset: noise of the depth camera, m and share
   std::filesystem::path recipe;                   // all; empty: the shipped one
-  double hours = 6;                               // all: share of the recipe's seeds
+  std::optional<double> hours;                    // all: a share of the recipe's; none: all
   ItemOptions items;                              // dataset: an item is an episode
 };
 

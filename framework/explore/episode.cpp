@@ -22,7 +22,6 @@ namespace {
 
 constexpr double kMostCleared = 1 << 24;  // voxels
 constexpr int kRescored = 4;              // views that are re-scored together; a part of the result
-constexpr double kLeastSeconds = 1e-3;    // of an image without a way and without a pause
 constexpr std::size_t kListed = 64;       // candidates valued between two looks at the clock
 
 double wall_seconds() {
@@ -43,7 +42,10 @@ void require_sense(const EpisodeSettings& s, const Map& map) {
   if (!(s.acceleration >= 0) || !std::isfinite(s.acceleration) || !(s.turn_acceleration >= 0) ||
       !std::isfinite(s.turn_acceleration) || (s.acceleration > 0) != (s.turn_acceleration > 0))
     throw InputError("accelerations of moves must be above 0, or both 0");
-  if (!(s.pause >= 0)) throw InputError("the pause for an image must be at least 0 s");
+  if (!(s.pause >= 0) || !std::isfinite(s.pause))
+    throw InputError("the pause for an image must be at least 0 s");
+  if (s.per_second && !(s.pause > 0))
+    throw InputError("an exploration by seconds needs a pause for an image above 0 s");
   if (!(s.clear >= s.body)) throw InputError("the box cleared at the start must hold the body");
   if (const double edge = s.clear / map.grid().resolution() + 2; edge * edge * edge > kMostCleared)
     throw InputError("the box of " + plain_number(s.clear) + " m cleared at the start holds " +
@@ -229,7 +231,7 @@ double Explorer::rank_of(double value, int place) const {
   // Of a view that nobody has asked for the way to: until then it is a neighbour.
   const auto at = static_cast<std::size_t>(place);
   const double reach = at < reach_.size() ? reach_[at] : 0;
-  return value / std::max(reach + settings_.pause, kLeastSeconds);
+  return value / (reach + settings_.pause);
 }
 
 int Explorer::value_of(std::span<const Viewpoint> views, std::span<double> values) const {

@@ -71,7 +71,7 @@ SampleSet read_samples(const std::filesystem::path& path) {
   const Value header =
       from_json(std::string_view(bytes).substr(kMagic.size(), line - kMagic.size()), path.string());
   Diagnostics errors;
-  Fields fields(header, "", errors);
+  Fields fields(header, path.string(), errors);
   SampleSet samples;
   samples.world = fields.text("world");
   samples.episode = fields.integer("episode");
@@ -95,7 +95,8 @@ SampleSet read_samples(const std::filesystem::path& path) {
   const std::size_t numbers = samples.targets.size() * sizeof(float);
   std::memcpy(samples.targets.data(), bytes.data() + begin, numbers);
   for (const float target : samples.targets)
-    if (!std::isfinite(target)) throw refuse("a target is not a finite number");
+    if (!std::isfinite(target) || target < 0)
+      throw refuse("a target is not a finite number of at least 0");
   samples.inputs.assign(bytes.begin() + static_cast<std::ptrdiff_t>(begin + numbers), bytes.end());
   return samples;
 }

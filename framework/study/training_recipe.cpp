@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "framework/study/training_recipe.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -16,6 +17,7 @@ namespace lapwing {
 namespace {
 
 constexpr int kMostSteps = 100'000;
+constexpr double kLargestSeed = 1e9, kMostSeeds = 10'000;  // of one line
 
 RecipeSamples samples_from(Fields& fields, bool has_model) {
   RecipeSamples samples;
@@ -32,11 +34,16 @@ RecipeSamples samples_from(Fields& fields, bool has_model) {
   }
   const std::vector<double> seeds = fields.numbers("seeds", 2);
   if (seeds.size() == 2) {
-    samples.first = static_cast<std::int64_t>(seeds[0]);
-    samples.last = static_cast<std::int64_t>(seeds[1]);
-    if (samples.first < 0 || samples.last < samples.first || seeds[0] != std::floor(seeds[0]) ||
-        seeds[1] != std::floor(seeds[1]))
-      fields.add_error("seeds", "expected the first and the last seed, whole numbers");
+    const bool whole = seeds[0] == std::floor(seeds[0]) && seeds[1] == std::floor(seeds[1]);
+    if (!whole || seeds[0] < 0 || seeds[1] < seeds[0] || seeds[1] > kLargestSeed ||
+        seeds[1] - seeds[0] >= kMostSeeds) {
+      fields.add_error("seeds", "expected the first and the last seed, whole numbers up to " +
+                                    plain_number(kLargestSeed) + ", at most " +
+                                    plain_number(kMostSeeds) + " of them");
+    } else {
+      samples.first = static_cast<std::int64_t>(seeds[0]);
+      samples.last = static_cast<std::int64_t>(seeds[1]);
+    }
   }
   samples.explorer = fields.text("explorer");
   if (samples.explorer == TrainingRecipe::kItself && !has_model)
@@ -57,7 +64,7 @@ std::vector<RecipeSamples> all_samples(Fields& fields, const char* name, bool ha
   return all;
 }
 
-// Who is judged by what it was trained with is told nothing.
+// Training and validation must not share worlds.
 void require_apart(const TrainingRecipe& recipe, const std::string& file) {
   std::set<std::pair<std::string, std::int64_t>> judged;
   for (const RecipeSamples& samples : recipe.validation)
@@ -95,8 +102,10 @@ TrainingRecipe TrainingRecipe::within(double given) const {
   TrainingRecipe shorter = *this;
   const auto cut = [&](RecipeSamples& samples) {
     const double seeds = static_cast<double>(samples.last - samples.first + 1);
-    samples.last =
-        samples.first + static_cast<std::int64_t>(std::ceil(seeds * given / hours - 1e-9)) - 1;
+    samples.last = samples.first +
+                   std::max<std::int64_t>(
+                       1, static_cast<std::int64_t>(std::ceil(seeds * given / hours - 1e-9))) -
+                   1;
   };
   for (RecipeSamples& samples : shorter.validation) cut(samples);
   for (RecipeRound& round : shorter.rounds)
@@ -111,7 +120,8 @@ TrainingRecipe read_recipe(const std::filesystem::path& file) {
   TrainingRecipe recipe;
   recipe.utility = fields.text("utility");
   recipe.hours = fields.number("hours");
-  if (!(recipe.hours > 0)) fields.add_error("hours", "expected above 0 h");
+  if (!(recipe.hours > 0) || !std::isfinite(recipe.hours))
+    fields.add_error("hours", "expected above 0 h");
   recipe.validation = all_samples(fields, "validation", false);
   for (Fields& entry : fields.tables("rounds")) {
     RecipeRound& round = recipe.rounds.emplace_back();

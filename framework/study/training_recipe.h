@@ -3,13 +3,14 @@
 // fit of all samples so far that begins with the model of the round before.
 //
 //   utility: learned
-//   hours: 6                       # of two idle cores, for all seeds
+//   hours: 6                       # for all seeds; fewer hours take fewer seeds
 //   validation:
 //     - {scenes: [mine], seeds: [901, 903], explorer: frontier, steps: 80}
 //   rounds:
 //     - samples:
 //         - {scenes: [mine, depot], seeds: [1, 48], explorer: oracle, steps: 100}
-//         - {scenes: [mine], seeds: [401, 424], explorer: itself, sigma: 0.5, dropped: 0.4}
+//         - {scenes: [mine], seeds: [401, 424], explorer: itself, steps: 100,
+//            sigma: 0.5, dropped: 0.4}
 //       fit: {epochs: 3}           # parameters of `train fit`
 //
 // The explorer `itself` is the utility with the model of the round before.
@@ -44,7 +45,7 @@ struct TrainingRecipe {
   static constexpr const char* kItself = "itself";
 
   std::string utility;
-  double hours = 1;  // that it takes, by the author's measurement
+  double hours = 1;  // for all seeds
   std::vector<RecipeSamples> validation;
   std::vector<RecipeRound> rounds;
   std::string checksum;  // of the file
@@ -55,7 +56,7 @@ struct TrainingRecipe {
 };
 // InputError naming the file: keys that are none, a line that is missing, seeds that are no range,
 // `itself` where there is no model yet, a world that is both in training and in validation or
-// twice in training by one explorer.
+// twice in training.
 TrainingRecipe read_recipe(const std::filesystem::path& file);
 
 }  // namespace lapwing

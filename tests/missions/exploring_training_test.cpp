@@ -118,11 +118,14 @@ rounds:
   };
   ASSERT_EQ(train("a.model", "--hours 1 --threads 1"), 0) << read_file(errors);
   const std::string whole = read_file(folder_ / "a.model");
-  EXPECT_THAT(read_file(folder_ / "a.log"), testing::HasSubstr("round_2: {\"epoch\":1"));
+  EXPECT_THAT(read_file(folder_ / "a.model.log"), testing::HasSubstr("round_2: {\"epoch\":1"));
   EXPECT_EQ(train("a.model", "--hours 1"), 2);
   EXPECT_THAT(read_file(errors), testing::HasSubstr("a.model' exists"));
   // What is missing is made again, and nothing else.
   fs::remove(folder_ / "a.model");
+  EXPECT_EQ(train("a.model", "--hours 1"), 2);
+  EXPECT_THAT(read_file(errors), testing::HasSubstr("a.model.log' exists"));
+  fs::remove(folder_ / "a.model.log");
   EXPECT_EQ(train("a.model", "--hours 1"), 2);
   EXPECT_THAT(read_file(errors), testing::HasSubstr("continue it with --resume"));
   const fs::path work = folder_ / "a.model.training";
@@ -132,6 +135,7 @@ rounds:
   EXPECT_THAT(read_file(errors), testing::HasSubstr("its hours is 1.0, not 2.0"));
   ASSERT_EQ(train("a.model", "--hours 1 --threads 2 --resume"), 0) << read_file(errors);
   EXPECT_EQ(read_file(folder_ / "a.model"), whole);
+  // All of a recipe whose hours are its own: it is more than half of it.
   EXPECT_EQ(train("b.model", "--hours 3"), 2);
   EXPECT_THAT(read_file(errors), testing::HasSubstr("--hours: expected above 0 and at most 2"));
   // What is named is known before anything is flown.

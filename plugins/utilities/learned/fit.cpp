@@ -58,7 +58,7 @@ std::string digest_of(const Samples& samples) {
   return sha256(all);
 }
 
-// Who is judged by what it was trained with is told nothing; what is there twice counts twice.
+// Training and validation must not share samples; what is there twice would count twice.
 void require_apart(const FitRequest& request, const Samples& training, const Samples& validation) {
   std::map<std::string, std::size_t> trained;
   for (std::size_t k = 0; k < training.sets.size(); ++k) {
@@ -154,7 +154,7 @@ void Training::begin() {
   best_.loss = HUGE_VAL;
 }
 
-// A training that never learns more slowly towards its last epoch may be given more of them.
+// At a constant rate, `epochs` may be raised on resume.
 void Training::require_same(const Value& checkpoints) const {
   for (const auto& [key, value] : asked_.as_map()) {
     if (key == "epochs" && !cosine_) continue;
