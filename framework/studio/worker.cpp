@@ -260,7 +260,8 @@ class StudioWorker {
     settings.first_flight_alone = true;
     try {
       configured_mission(script_, settings, layer)->plan();
-    } catch (const Cancelled&) {
+    } catch (const Error&) {
+      // What is wrong is said of the document, once it is let go of.
     }
   }
 

@@ -286,7 +286,8 @@ void WorkerLooks::work() {
     Frame frame;
     try {
       frame = answer(question);
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
+      frame = {};
       frame.header.set("said", "failed");
       frame.header.set("why", as_utf8(error.what()));
     }
