@@ -318,7 +318,7 @@ TEST(LearnedRays, TheShippedModelIsThatOfItsRecipe) {
   EXPECT_TRUE(model.ray_network(folder / "learned.model") == RayNetworkShape{});
   EXPECT_EQ(model.mapping.at("resolution").as_number(), 0.4);
   EXPECT_LT(fs::file_size(folder / "learned.model"), 4u << 20);
-  const std::string log = read_file(folder / "learned.log");
+  const std::string log = read_file(folder / "learned.model.log");
   const Value* from = &model.provenance;
   for (int round = 4; round >= 1; --round) {
     ASSERT_NE(from, nullptr) << round;
