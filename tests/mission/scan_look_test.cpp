@@ -6,6 +6,7 @@
 #include <set>
 
 #include "framework/export/scan_report.h"
+#include "tests/mission/hut_scene.h"
 #include "tests/mission/mission_fixture.h"
 
 namespace lapwing {
@@ -13,18 +14,7 @@ namespace {
 
 class ScanLook : public MissionTest {
  protected:
-  void SetUp() override {
-    fs::create_directories(folder_ / "scene");
-    write_file_atomically(folder_ / "scene/hut.lua", R"(
-return function(options)
-  local scene = lapwing.scene { name = "hut", seed = options.seed }
-  scene:quad({-30, -30, 0}, {30, -30, 0}, {30, 30, 0}, {-30, 30, 0})
-  scene:box({-4, -3, 0}, {4, 3, 4})
-  scene:region({-6, -5, -0.4}, {6, 5, 7})
-  return scene
-end
-)");
-  }
+  void SetUp() override { write_hut_scene(folder_); }
   MissionResult planned(const std::string& more = "") {
     write_file_atomically(folder_ / "hut.lua", R"(
 return require("mission.scan").of_scene {

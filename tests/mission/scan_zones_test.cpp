@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "framework/survey/reference_system.h"
+#include "tests/mission/hut_scene.h"
 #include "tests/mission/mission_fixture.h"
 
 namespace lapwing {
@@ -16,18 +17,7 @@ constexpr const char* kOrigin =
 
 class ScanZones : public MissionTest {
  protected:
-  void SetUp() override {
-    fs::create_directories(folder_ / "scene");
-    write_file_atomically(folder_ / "scene/hut.lua", R"(
-return function(options)
-  local scene = lapwing.scene { name = "hut", seed = options.seed }
-  scene:quad({-30, -30, 0}, {30, -30, 0}, {30, 30, 0}, {-30, 30, 0})
-  scene:box({-4, -3, 0}, {4, 3, 4})
-  scene:region({-6, -5, -0.4}, {6, 5, 7})
-  return scene
-end
-)");
-  }
+  void SetUp() override { write_hut_scene(folder_); }
 
   std::string said(const std::string& options) {
     return error(

@@ -32,42 +32,54 @@ std::filesystem::path model_path(const std::string& named, const std::string& ut
                    "': the shipped model is not beside its library; name one with model: FILE");
 }
 
-void require_mapping(const EpisodeView& known, const Model& model, const char* utility) {
-  const std::string difference = mapping_difference(mapping_of(known), model.mapping);
-  if (!difference.empty())
-    throw InputError(std::string("utility '") + utility +
-                     "' was trained with another mapping: " + difference +
-                     "; set the value of the model in the mission, or use a utility without a " +
-                     "model (frontier)");
-}
+// A model, and the mapping that it is good for.
+class Trained : public ViewUtility {
+ public:
+  void require_fit(const EpisodeView& known) const override {
+    const std::string difference = mapping_difference(mapping_of(known), model_.mapping);
+    if (!difference.empty())
+      throw InputError("utility '" + name_ + "' was trained with another mapping: " + difference +
+                       "; set the value of the model in the mission, or use a utility without a " +
+                       "model (frontier)");
+  }
+
+ protected:
+  Trained(const Parameters& p, const std::string& name)
+      : name_(name),
+        path_(model_path(p.text("model"), name)),
+        model_(learned::read_model(path_)),
+        blank_(p.boolean("blank")) {}
+  // What both have.
+  static ParameterTable common_parameters() {
+    return ParameterTable()
+        .text("model", "", "file of a trained model; empty: the shipped one")
+        .boolean("blank", false, "blank input of the network, for comparison");
+  }
+
+  std::string name_;
+  std::filesystem::path path_;
+  Model model_;
+  bool blank_;
+};
 
 // The network that reads rays (ray_network.h). The value is in voxels of surface.
-class Learned final : public ViewUtility {
+class Learned final : public Trained {
  public:
   static constexpr PluginText kText{"learned", "2.0.0",
                                     "network that reads rays, trained on the values of the oracle",
                                     "thesis 5.4.3, 5.5.1"};
   static ParameterTable parameters() {
-    return ParameterTable()
-        .text("model", "", "file of a trained model; empty: the shipped one")
-        .number("least", 0.4, "", "a view that would show fewer voxels is worth nothing",
-                between(0, 1e6))
-        .boolean("blank", false, "blank input of the network, for comparison");
+    return common_parameters().number(
+        "least", 0.4, "", "a view that would show fewer voxels is worth nothing", between(0, 1e6));
   }
   static std::span<const Extension> extensions() {
     static const Extension all[] = {{kTrainable, &learned::kRayTrainable}};
     return all;
   }
   explicit Learned(const Parameters& p)
-      : path_(model_path(p.text("model"), kText.name)),
-        model_(learned::read_model(path_)),
+      : Trained(p, kText.name),
         network_(learned::RayNetworkLayout(model_.ray_network(path_)), model_.state.parameters),
-        least_(p.number("least")),
-        blank_(p.boolean("blank")) {}
-
-  void require_fit(const EpisodeView& known) const override {
-    require_mapping(known, model_, kText.name);
-  }
+        least_(p.number("least")) {}
 
  protected:
   void values_of(const EpisodeView& known, std::span<const Viewpoint> views,
@@ -88,11 +100,8 @@ class Learned final : public ViewUtility {
   }
 
  private:
-  std::filesystem::path path_;
-  Model model_;
   learned::RayNetwork network_;
   double least_;
-  bool blank_;
 };
 
 // Voxels of surface that rays through the map could still observe, weighted as (5.3) weights them.
@@ -136,37 +145,29 @@ double still_to_observe(const EpisodeView& known, const Viewpoint& view, double 
 }
 
 // The network of the thesis, which reads a grid around the camera (network.h).
-class LearnedGrid final : public ViewUtility {
+class LearnedGrid final : public Trained {
  public:
   static constexpr PluginText kText{
       "learned_grid", "1.0.0", "network that reads a grid, trained on the values of the oracle",
       "thesis 5.4.3, 5.5.1"};
   static ParameterTable parameters() {
-    return ParameterTable()
-        .text("model", "", "file of a trained model; empty: the shipped one")
+    return common_parameters()
         .boolean("rays", true, "combine the network with ray casts of the view")
         .number("behind", 1.5, "m", "assumed distance from unknown space to a surface, for rays",
                 between(0, 100))
         .number("grazed", 3, "", "factor on known surface, for voxels that rays graze",
-                between(0, 100))
-        .boolean("blank", false, "blank input of the network, for comparison");
+                between(0, 100));
   }
   static std::span<const Extension> extensions() {
     static const Extension all[] = {{kTrainable, &learned::kGridTrainable}};
     return all;
   }
   explicit LearnedGrid(const Parameters& p)
-      : path_(model_path(p.text("model"), kText.name)),
-        model_(learned::read_model(path_)),
+      : Trained(p, kText.name),
         network_(learned::NetworkLayout(model_.grid_network(path_)), model_.state),
         rays_(p.boolean("rays")),
         behind_(p.number("behind")),
-        grazed_(p.number("grazed")),
-        blank_(p.boolean("blank")) {}
-
-  void require_fit(const EpisodeView& known) const override {
-    require_mapping(known, model_, kText.name);
-  }
+        grazed_(p.number("grazed")) {}
 
  protected:
   void values_of(const EpisodeView& known, std::span<const Viewpoint> views,
@@ -189,12 +190,9 @@ class LearnedGrid final : public ViewUtility {
   }
 
  private:
-  std::filesystem::path path_;
-  Model model_;
   learned::FoldedNetwork network_;
   bool rays_;
   double behind_, grazed_;
-  bool blank_;
 };
 
 }  // namespace

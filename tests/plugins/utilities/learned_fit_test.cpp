@@ -6,8 +6,8 @@
 #include "framework/core/error.h"
 #include "framework/core/files.h"
 #include "framework/map/plain_map.h"
-#include "plugins/utilities/learned/fit.h"
 #include "plugins/utilities/learned/model_file.h"
+#include "tests/plugins/utilities/fit_fixture.h"
 
 namespace lapwing {
 namespace {
@@ -40,19 +40,8 @@ void write_easy_samples(const std::filesystem::path& folder, int files, std::uin
   }
 }
 
-struct FitFixture {
-  std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "learned_fit";
-  FitRequest request;
-  Value given = Value::map();
-
-  FitFixture() {
-    std::filesystem::remove_all(folder);
-    write_easy_samples(folder / "training", 2, 1);
-    write_easy_samples(folder / "validation", 1, 2);
-    request.training = sample_files({folder / "training"});
-    request.validation = sample_files({folder / "validation"});
-    request.model = folder / "a.model";
-    request.checkpoint = folder / "a.checkpoint";
+struct FitFixture : TrainingFolder {
+  FitFixture() : TrainingFolder(kGridTrainable, "learned_fit", &write_easy_samples, 2) {
     Value& grid = given.set("grid", Value::map());
     grid.set("across", 8);
     grid.set("ahead", 4);
@@ -65,17 +54,6 @@ struct FitFixture {
     given.set("epochs", 12);
     given.set("rate", 0.01);
     given.set("dropout", 0.0);
-  }
-  ~FitFixture() { std::filesystem::remove_all(folder); }
-  Value run() { return kGridTrainable.fit(check(kGridTrainable.fit_parameters(), given), request); }
-  // What it says; empty where it does not refuse.
-  std::string refusal() {
-    try {
-      run();
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
   }
 };
 

@@ -8,8 +8,8 @@
 #include "framework/core/files.h"
 #include "framework/core/json.h"
 #include "framework/map/plain_map.h"
-#include "plugins/utilities/learned/fit.h"
 #include "plugins/utilities/learned/model_file.h"
+#include "tests/plugins/utilities/fit_fixture.h"
 
 namespace lapwing {
 namespace {
@@ -226,22 +226,9 @@ void write_ray_samples(const std::filesystem::path& folder, int files, std::uint
   }
 }
 
-struct RayFixture {
-  std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "learned_rays";
-  FitRequest request;
-  Value given = Value::map();
-
-  RayFixture() {
-    std::filesystem::remove_all(folder);
-    write_ray_samples(folder / "training", 4, 1);
-    write_ray_samples(folder / "validation", 1, 2);
-    request.training = sample_files({folder / "training"});
-    request.validation = sample_files({folder / "validation"});
-    request.model = folder / "a.model";
-    request.checkpoint = folder / "a.checkpoint";
-    Value& rays = given.set("rays", Value::map());
-    rays.set("columns", 6);
-    rays.set("rows", 5);
+struct RayFixture : TrainingFolder {
+  RayFixture() : TrainingFolder(kRayTrainable, "learned_rays", &write_ray_samples, 4) {
+    given.set("rays", to_value(RayShape{6, 5}));
     given.set("width", 16);
     given.set("convolutions", 1);
     given.set("batch", 16);
@@ -249,8 +236,6 @@ struct RayFixture {
     given.set("patience", 25);
     given.set("rate", 0.01);
   }
-  ~RayFixture() { std::filesystem::remove_all(folder); }
-  Value run() { return kRayTrainable.fit(check(kRayTrainable.fit_parameters(), given), request); }
 };
 
 TEST(LearnedRays, LearnsWhatIsEasy) {
@@ -292,21 +277,18 @@ TEST(LearnedRays, ModelsOfBothNetworksAreToldApart) {
   RayFixture fixture;
   fixture.given.set("epochs", 1);
   fixture.run();
-  const auto refusal = [&](const auto& call) -> std::string {
-    try {
-      call();
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
-  };
   const SampleSet set = read_samples(fixture.request.validation.front());
-  const std::string told = refusal([&] { kGridTrainable.predict(fixture.request.model, set, 1); });
-  EXPECT_NE(told.find("a.model' is a model that reads rays"), std::string::npos) << told;
+  try {
+    kGridTrainable.predict(fixture.request.model, set, 1);
+    ADD_FAILURE() << "a model of rays is taken for one of a grid";
+  } catch (const InputError& error) {
+    const std::string told = error.what();
+    EXPECT_NE(told.find("a.model' is a model that reads rays"), std::string::npos) << told;
+  }
   fixture.given.set("rays", to_value(RayShape{7, 5}));
   fixture.request.model = fixture.folder / "b.model";
   fixture.request.checkpoint = fixture.folder / "b.checkpoint";
-  const std::string other = refusal([&] { fixture.run(); });
+  const std::string other = fixture.refusal();
   EXPECT_NE(other.find("holds samples of another input"), std::string::npos) << other;
 }
 
