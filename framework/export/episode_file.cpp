@@ -53,6 +53,7 @@ ExplorationRecord record_from(Fields fields) {
   record.end = fields.text("end");
   record.surface = fields.number("surface");
   record.efficiency = fields.number("efficiency");
+  record.per_second = fields.boolean("per_second");
   record.resolution = fields.number("resolution");
   for (Fields image : fields.tables("images")) {
     ExplorationImage one;
@@ -108,7 +109,7 @@ void require_sights(const std::string& bytes, std::size_t images, const fs::path
     return bytes.size() < kStart ? 0 : number_at<std::uint32_t>(bytes, kHead + 4 * k);
   };
   const std::size_t each = 2 * count(2) * count(1) * count(1) + sizeof(ExplorationRay) * count(3);
-  require_whole(bytes, "WLV1", kStart + 4 * count(2) + each * images, path);
+  require_whole(bytes, "WLE1", kStart + 4 * count(2) + each * images, path);
   if (count(0) != images)
     throw InputError("'" + path.string() + "' is of " + std::to_string(count(0)) +
                      " images, episode.json of " + std::to_string(images));
@@ -139,6 +140,7 @@ Value exploration_value(const ExplorationRecord& record) {
   value.set("end", record.end);
   value.set("surface", record.surface);
   value.set("efficiency", record.efficiency);
+  value.set("per_second", record.per_second);
   value.set("resolution", record.resolution);
   Value& images = value.set("images", Value::list());
   for (std::size_t k = 0; k < record.images.size(); ++k)
@@ -181,7 +183,7 @@ std::string sights_bytes(const std::vector<ExplorationSight>& sights) {
   static_assert(sizeof(ExplorationRay) == 20);
   const ExplorationSight none;
   const ExplorationSight& first = sights.empty() ? none : sights.front();
-  std::string bytes = "WLV1";
+  std::string bytes = "WLE1";
   for (const std::size_t count : {sights.size(), static_cast<std::size_t>(first.grid.points),
                                   first.grid.edges.size(), first.rays.size()})
     add_number(bytes, static_cast<std::uint32_t>(count));

@@ -28,7 +28,7 @@ Value image_value(const ExplorationImage& image, double observed);
 // m) and its image.
 std::string growth_bytes(const ExplorationRecord& record);
 
-// What each image was chosen by: the text "WLV1", then as 32-bit little-endian numbers the counts
+// What each image was chosen by: the text "WLE1", then as 32-bit little-endian numbers the counts
 // of images, of points along an edge of a slice, of levels and of rays; the edges of the levels
 // (floats, m). Then of each image a byte for each point of the slices of occupancy, level by level,
 // north-west corner first (0: 0, 255: 1), the same of certainty, and its rays: the end (three

@@ -187,7 +187,11 @@ std::string StudioSession::welcome_text() const {
 
 void StudioSession::take(PageSocket& page, const PageMessage& message) {
   if (message.type == Type::rest) return rest();
-  if (message.type == Type::pace) return pace(message.pace);
+  if (message.type == Type::pace) {
+    if (mission_kind_ != "explore")
+      return refuse(&page, message, "only the planning of an exploration can be paused");
+    return pace(message.pace);
+  }
   if (!document_)
     return refuse(&page, message, "the script could not be loaded yet: " + script_error_);
   switch (message.type) {

@@ -257,7 +257,7 @@ TEST_F(StudioKinds, AnExplorationIsSteppedThroughAndOpenedFromItsFolder) {
   ASSERT_TRUE(page.send(gesture("g", 1, {change("steps", 40)})));
   const Value first = page.until_type("image");
   EXPECT_EQ(first.at("asked"), Value(40));
-  EXPECT_EQ(blob(address, first.at("sights")).substr(0, 4), "WLV1");
+  EXPECT_EQ(blob(address, first.at("sights")).substr(0, 4), "WLE1");
   ASSERT_TRUE(page.send_text(R"({"type": "pace", "pace": "pause"})"));
   page.until_type("pace");
   Value last = first;

@@ -955,5 +955,14 @@ TEST_F(Session, ImagesAreToldInOrderAndPlanningCanWait) {
   EXPECT_TRUE(page("d")->of_type("image").empty());
 }
 
+TEST_F(Session, OnlyAnExplorationCanBePaused) {
+  open("scan");
+  const auto a = page("a");
+  say(*a, R"({"type": "pace", "pace": "pause"})");
+  EXPECT_EQ(a->last("refused").at("why"),
+            Value("only the planning of an exploration can be paused"));
+  EXPECT_TRUE(a->of_type("pace").empty());
+}
+
 }  // namespace
 }  // namespace lapwing

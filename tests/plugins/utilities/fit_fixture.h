@@ -8,8 +8,7 @@
 namespace lapwing {
 
 struct TrainingFolder {
-  using WriteSamples = void (*)(const std::filesystem::path& folder, int files,
-                                std::uint64_t seed);
+  using WriteSamples = void (*)(const std::filesystem::path& folder, int files, std::uint64_t seed);
 
   const Trainable& trainable;
   std::filesystem::path folder;

@@ -145,7 +145,7 @@ test("voxels grow image by image; bytes that hold none are refused", () => {
 function sightBytes(): ArrayBuffer {
   const bytes = new ArrayBuffer(20 + 8 + 2 * (2 * 2 * 4 + 20));
   const data = new DataView(bytes);
-  [..."WLV1"].forEach((letter, i) => data.setUint8(i, letter.charCodeAt(0)));
+  [..."WLE1"].forEach((letter, i) => data.setUint8(i, letter.charCodeAt(0)));
   [2, 2, 2, 1].forEach((count, i) => data.setUint32(4 + 4 * i, count, true));
   [1.5, 3].forEach((edge, i) => data.setFloat32(20 + 4 * i, edge, true));
   for (let image = 0; image < 2; ++image) {

@@ -27,11 +27,12 @@ const most = (list: number[]): number | null => {
 function seenBy({ scan, exploration }: World): Figure[] {
   const figures: Figure[] = [];
   if (exploration) {
-    const { images, efficiency } = exploration;
+    const { images, efficiency, per_second } = exploration;
     const found = images[images.length - 1]?.observed ?? 0;
     figures.push({ name: "Images", unit: "", value: images.length },
                  { name: "Surface found", unit: "voxels", value: found },
-                 { name: "Efficiency", unit: "", value: efficiency });
+                 { name: "Efficiency", value: efficiency,
+                   unit: per_second ? "voxels, mean over the flight" : "voxel images" });
   }
   if (scan) {
     const area = (name: string): number | null =>

@@ -49,7 +49,7 @@ export class Sights {
   constructor(private readonly buffer: ArrayBuffer) {
     this.data = new DataView(buffer);
     const whole = buffer.byteLength >= SIGHT_HEAD &&
-      String.fromCharCode(...new Uint8Array(buffer, 0, 4)) === "WLV1";
+      String.fromCharCode(...new Uint8Array(buffer, 0, 4)) === "WLE1";
     [this.images, this.points, this.levels, this.rays] = [4, 8, 12, 16].map((at) =>
       (whole ? this.data.getUint32(at, true) : 0)) as [number, number, number, number];
     if (!whole || SIGHT_HEAD + 4 * this.levels + this.each * this.images !== buffer.byteLength) {

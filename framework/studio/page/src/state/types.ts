@@ -181,6 +181,7 @@ export interface ExplorationWorld {
   end: string;
   surface: number;             // voxels there were to find; 0: nobody knows
   efficiency: number;
+  per_second?: boolean;         // efficiency is the mean over the flight, else (5.6)
   resolution: number;          // m
   images: { time: number; position: Vec3; yaw: number; pitch: number; value: number;
             scored: number; observed: number | null }[];   // null while it is not known yet

@@ -60,7 +60,7 @@ export class SightView {
       this.fetched.set(name, new Sights(buffer));
       this.find();
     }).catch((error: Error) => {
-      this.fetched.delete(name);
+      // It stays null: asked for again at every move of the play head, it would be told as often.
       this.studio.session.note(`What a view was chosen by cannot be shown: ${error.message}`);
     });
   }
