@@ -96,6 +96,7 @@ struct CommandWays {
 constexpr CommandWays kCommands[] = {{"evaluate scan", "--out", true, true},
                                      {"evaluate explore", "--out", true, true},
                                      {"train dataset", "--output", true, true},
+                                     {"train fit", "--output", true, true},
                                      {"train score", "", false, false},
                                      {"run", "--out", false, true},
                                      {"tour", "", false, false}};

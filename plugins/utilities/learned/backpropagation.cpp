@@ -29,6 +29,7 @@ struct Backpropagation::Unit {
   std::vector<float> result;    // of the convolution, before its normalisation
   std::vector<float> gradient;  // of the result, padded
   std::vector<float> active;    // of the last unit of a block: what is pooled
+  std::vector<float> shortcut;  // residual: gradient of what the input was added to, its maps
   std::vector<std::uint8_t> place;
   std::vector<float> mean, inverse;  // of the batch: mean, one over the deviation
 };
@@ -55,6 +56,7 @@ Backpropagation::Backpropagation(const NetworkLayout& layout, int batch, int thr
       unit.place.assign(n * points / 8 * out, 0);
     }
     unit.gradient.assign(n * place.padded() * out, 0);
+    if (layout_.shape.residual && k > 0) unit.shortcut.assign(n * points * in, 0);
     most_points = std::max(most_points, n * points * std::max(in, out));
     most_weights = std::max(most_weights, 27 * in * out);
   }
@@ -143,19 +145,25 @@ void Backpropagation::forward_unit(std::size_t k, NetworkState& state, bool keep
       for (std::size_t p = 0; p < points; ++p)
         for (std::size_t c = 0; c < out; ++c)
           active[p * out + c] = std::max(y[p * out + c] * factor[c] + shift[c], 0.0f);
+      if (layout_.shape.residual) add_input(place, unit.input.data() + n * each_in, active);
       float* to = last ? flat_.data() + n * static_cast<std::size_t>(layout_.flat)
                        : units_[k + 1].input.data() + n * layout_.units[k + 1].padded() * out;
       pool(place.size, place.out, active, !last, to, unit.place.data() + n * points / 8 * out);
       return;
     }
     float* next = units_[k + 1].input.data() + n * place.padded() * out;
-    const auto row = static_cast<std::size_t>(place.size[0]);
+    const auto row = static_cast<std::size_t>(place.size[0]),
+               in = static_cast<std::size_t>(place.in);
     for (int z = 0; z < place.size[2]; ++z)
       for (int i = 0; i < place.size[1]; ++i, y += row * out) {
         float* to = next + place.row(i, z, place.out) + out;
         for (std::size_t x = 0; x < row; ++x)
           for (std::size_t c = 0; c < out; ++c)
             to[x * out + c] = std::max(y[x * out + c] * factor[c] + shift[c], 0.0f);
+        if (!layout_.shape.residual) continue;
+        const float* from = unit.input.data() + n * each_in + place.row(i, z, place.in) + in;
+        for (std::size_t x = 0; x < row; ++x)
+          for (std::size_t c = 0; c < in; ++c) to[x * out + c] += from[x * in + c];
       }
   });
 }
@@ -170,6 +178,11 @@ void Backpropagation::backward_unit(std::size_t k, const NetworkState& state,
              points = static_cast<std::size_t>(place.points());
   const float* scale = state.parameters.data() + place.scale;
   const float* shift = state.parameters.data() + place.shift;
+  if (!unit.shortcut.empty())
+    for_samples([&](std::size_t n) {
+      for (std::size_t p = n * points; p < (n + 1) * points; ++p)
+        std::copy_n(points_gradient_.data() + p * out, in, unit.shortcut.data() + p * in);
+    });
   // Through rectification and normalisation.
   std::vector<std::vector<double>> sums(kShards, std::vector<double>(2 * out, 0.0));
   for_shards([&](std::size_t s, std::size_t first, std::size_t end) {
@@ -252,6 +265,9 @@ void Backpropagation::backward_unit(std::size_t k, const NetworkState& state,
   for_samples([&](std::size_t n) {
     convolve(place, unit.gradient.data() + n * each_out, place.out, turned.data(), nullptr, false,
              place.in, points_gradient_.data() + n * points * in);
+    if (unit.shortcut.empty()) return;
+    for (std::size_t i = n * points * in; i < (n + 1) * points * in; ++i)
+      points_gradient_[i] += unit.shortcut[i];
   });
 }
 

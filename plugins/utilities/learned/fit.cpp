@@ -329,6 +329,7 @@ ParameterTable grid_fit() {
           .integer("growth", 8, "N_f, feature maps that every convolution adds", widths)
           .integer("hidden1", 128, "N_h1", widths)
           .integer("hidden2", 32, "N_h2", widths)
+          .boolean("residual", false, "add the input of every convolution to its result")
           .choice("targets", "plain", {"plain", "root"},
                   "target: values of the oracle, or their square roots")
           .number("dropout", 0.5, "", "dropout: fraction of hidden units left out",

@@ -22,6 +22,7 @@ NetworkShape network_of(const Parameters& p) {
   shape.growth = static_cast<int>(p.integer("growth"));
   shape.hidden1 = static_cast<int>(p.integer("hidden1"));
   shape.hidden2 = static_cast<int>(p.integer("hidden2"));
+  shape.residual = p.boolean("residual");
   require_sense(shape);
   return shape;
 }

@@ -24,6 +24,10 @@ void require_sense(const NetworkShape& shape) {
     if (width < kLanes || width > NetworkShape::kMostWidth || width % kLanes != 0)
       throw InputError("growth and hidden layers must be multiples of 8 up to 1024, not " +
                        std::to_string(width));
+  if (shape.residual && shape.grid.channels() > shape.growth)
+    throw InputError("residual units cannot add an input of " +
+                     std::to_string(shape.grid.channels()) + " maps to " +
+                     std::to_string(shape.growth) + ": take fewer levels or a larger growth");
 }
 
 Value to_value(const NetworkShape& shape) {
@@ -34,6 +38,7 @@ Value to_value(const NetworkShape& shape) {
   value.set("growth", shape.growth);
   value.set("hidden1", shape.hidden1);
   value.set("hidden2", shape.hidden2);
+  if (shape.residual) value.set("residual", true);
   return value;
 }
 
@@ -47,6 +52,7 @@ NetworkShape network_shape_from(const Value& value) {
   shape.growth = fields.integer("growth", kLanes, NetworkShape::kMostWidth);
   shape.hidden1 = fields.integer("hidden1", kLanes, NetworkShape::kMostWidth);
   shape.hidden2 = fields.integer("hidden2", kLanes, NetworkShape::kMostWidth);
+  if (fields.has("residual")) shape.residual = fields.boolean("residual");
   fields.finish();
   errors.throw_if_any();
   shape.grid = grid_shape_from(grid);
@@ -178,6 +184,15 @@ void convolve(const UnitPlace& unit, const float* in, int maps_in, const float* 
     }
 }
 
+void add_input(const UnitPlace& unit, const float* in, float* out) {
+  for (int z = 0; z < unit.size[2]; ++z)
+    for (int y = 0; y < unit.size[1]; ++y) {
+      const float* row = in + unit.row(y, z, unit.in) + unit.in;
+      for (int x = 0; x < unit.size[0]; ++x, row += unit.in, out += unit.out)
+        for (int c = 0; c < unit.in; ++c) out[c] += row[c];
+    }
+}
+
 void pool(const int size[3], int maps, const float* in, bool border, float* out,
           std::uint8_t* place) {
   const int half[3] = {size[0] / 2, size[1] / 2, size[2] / 2};
@@ -256,6 +271,7 @@ float FoldedNetwork::run(Scratch& s) const {
     const UnitPlace& unit = layout_.units[k];
     convolve(unit, s.inputs[k].data(), unit.in, parameters_.data() + unit.weights,
              biases_[k].data(), true, unit.out, s.points.data());
+    if (layout_.shape.residual) add_input(unit, s.inputs[k].data(), s.points.data());
     const bool last = k + 1 == layout_.units.size();
     if (unit.last_of_block) {
       pool(unit.size, unit.out, s.points.data(), !last,

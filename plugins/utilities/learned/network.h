@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The convolutional network of thesis 5.4.3 (figure 5.8): blocks of units, each a 3 x 3 x 3
 // convolution, batch normalisation and rectification, then maxima over 2 x 2 x 2; two hidden layers
-// and a linear output (reading 5.5).
+// and a linear output (reading 5.5). With `residual`, each unit adds its input to its result (He et
+// al. 2016, "Identity mappings in deep residual networks"); maps that the input lacks stay as they
+// are.
 //
 // Arrays hold channels fastest, then x (right), y (forward), z (up). Unit k of all has growth (k+1)
 // maps. Weights of a convolution: [z][y][x][input][output].
@@ -24,10 +26,12 @@ struct NetworkShape {
   int blocks = 2, units = 4;        // units of each block
   int growth = 8;                   // maps that every convolution adds; a multiple of 8
   int hidden1 = 128, hidden2 = 32;  // multiples of 8
+  bool residual = false;            // the input may not have more maps than `growth` then
 
   bool operator==(const NetworkShape&) const = default;
 };
-// InputError: edges that cannot be halved once a block, widths that are no multiples of 8.
+// InputError: edges that cannot be halved once a block, widths that are no multiples of 8, an input
+// that is too wide to be added.
 void require_sense(const NetworkShape& shape);
 Value to_value(const NetworkShape& shape);
 NetworkShape network_shape_from(const Value& value);
@@ -103,6 +107,9 @@ class FoldedNetwork {
 // point... rows of x lie together. `weights` as above; `bias` may be null.
 void convolve(const UnitPlace& unit, const float* in, int maps_in, const float* weights,
               const float* bias, bool rectified, int maps_out, float* out);
+// The shortcut of a residual unit: adds `in`, padded, to the first maps of `out`, which has the
+// unit's maps and no border.
+void add_input(const UnitPlace& unit, const float* in, float* out);
 // Maxima over 2 x 2 x 2 of an array without border; `place` (may be null) tells which of the eight.
 // Into `out`: padded by one point where `border`.
 void pool(const int size[3], int maps, const float* in, bool border, float* out,

@@ -14,7 +14,7 @@ namespace {
 
 using namespace learned;
 
-NetworkShape small_shape() {
+NetworkShape small_shape(bool residual = false) {
   NetworkShape shape;
   shape.grid = {8, 4, 4, 1};
   shape.blocks = 2;
@@ -22,6 +22,7 @@ NetworkShape small_shape() {
   shape.growth = 8;
   shape.hidden1 = 16;
   shape.hidden2 = 8;
+  shape.residual = residual;
   return shape;
 }
 
@@ -35,7 +36,9 @@ class PlainNetwork {
               double lambda) const {
     std::vector<std::vector<double>> now = inputs_;
     for (const UnitPlace& unit : layout_.units) {
+      const std::vector<std::vector<double>> before = now;
       now = rectified_unit(unit, p, now);
+      if (layout_.shape.residual) add(unit, before, now);
       if (unit.last_of_block) now = maxima(unit, now);
     }
     double sum = 0;
@@ -111,6 +114,15 @@ class PlainNetwork {
     }
     return out;
   }
+  static void add(const UnitPlace& u, const std::vector<std::vector<double>>& in,
+                  std::vector<std::vector<double>>& out) {
+    for (std::size_t n = 0; n < in.size(); ++n)
+      for (int z = 0; z < u.size[2]; ++z)
+        for (int y = 0; y < u.size[1]; ++y)
+          for (int x = 0; x < u.size[0]; ++x)
+            for (int c = 0; c < u.in; ++c)
+              out[n][place(u.size, u.out, x, y, z, c)] += in[n][place(u.size, u.in, x, y, z, c)];
+  }
   static std::vector<std::vector<double>> maxima(const UnitPlace& u,
                                                  const std::vector<std::vector<double>>& in) {
     std::vector<std::vector<double>> out(in.size());
@@ -119,7 +131,7 @@ class PlainNetwork {
         for (int y = 0; y < u.size[1]; y += 2)
           for (int x = 0; x < u.size[0]; x += 2)
             for (int c = 0; c < u.out; ++c) {
-              double most = -1;
+              double most = -1e9;
               for (int k = 0; k < 8; ++k)
                 most = std::max(
                     most,
@@ -134,14 +146,15 @@ class PlainNetwork {
 };
 
 struct Batch {
-  NetworkLayout layout{small_shape()};
+  NetworkLayout layout;
   int size = 8;
   std::vector<std::vector<std::uint8_t>> bytes;
   std::vector<std::vector<double>> plain;
   std::vector<float> targets;
   NetworkState state;
 
-  Batch() : state(initial_state(layout, Random(5))) {
+  explicit Batch(bool residual = false)
+      : layout(small_shape(residual)), state(initial_state(layout, Random(5))) {
     Random random(9);
     for (int n = 0; n < size; ++n) {
       bytes.emplace_back();
@@ -199,8 +212,12 @@ TEST(LearnedKernels, MultiplyAsTheyShould) {
     }
 }
 
-TEST(LearnedNetwork, EveryDerivativeIsThatOfItsDefinition) {
-  Batch batch;
+// The parameter: whether its units are residual.
+class LearnedNetworks : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Units, LearnedNetworks, testing::Bool());
+
+TEST_P(LearnedNetworks, EveryDerivativeIsThatOfItsDefinition) {
+  Batch batch(GetParam());
   BatchOptions options;
   options.dropout = 0;
   options.regularisation = 0.01;
@@ -266,8 +283,8 @@ TEST(LearnedNetwork, DropoutIsDifferentiatedAsItIsDrawn) {
   EXPECT_NEAR((moved(0.01) - moved(-0.01)) / 0.02, slope, 2e-3 * slope);
 }
 
-TEST(LearnedNetwork, IsTheSameForAnyNumberOfThreads) {
-  Batch batch;
+TEST_P(LearnedNetworks, IsTheSameForAnyNumberOfThreads) {
+  Batch batch(GetParam());
   const NetworkState before = batch.state;
   std::vector<float> one, four;
   const double a = batch.loss(one, {});
@@ -280,9 +297,9 @@ TEST(LearnedNetwork, IsTheSameForAnyNumberOfThreads) {
 }
 
 // Asked, it uses its running statistics.
-TEST(LearnedNetwork, FoldedItAnswersAsDefined) {
+TEST_P(LearnedNetworks, FoldedItAnswersAsDefined) {
   // Where the running statistics are the batch's, the mean squared error is the batch's.
-  Batch same;
+  Batch same(GetParam());
   std::vector<float> gradient;
   BatchOptions options;
   options.dropout = 0;
@@ -321,6 +338,9 @@ TEST(LearnedNetwork, MirroringExchangesRightAndLeft) {
 TEST(LearnedNetwork, RefusesShapesThatCannotBe) {
   NetworkShape shape = small_shape();
   shape.blocks = 3;
+  EXPECT_THROW(NetworkLayout{shape}, InputError);
+  shape = small_shape(true);
+  shape.grid.levels = 5;  // ten maps cannot be added to eight
   EXPECT_THROW(NetworkLayout{shape}, InputError);
   shape = small_shape();
   shape.growth = 12;
