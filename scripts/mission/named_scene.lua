@@ -2,7 +2,7 @@
 -- Makes the scene of the options `scene`, `scene_seed` and, if the mission kind has
 -- it, `scene_districts` (scripts/scene).
 local SCENES = "arcade, church, courtyard, depot, district, downtown, grasslands, mine, office, "
-               .. "street, suburb, towers or town"
+               .. "street, suburb, terrace, towers or town"
 
 return function(run)
   local o = run.options

@@ -77,6 +77,15 @@ TEST(SeenShare, AFlightAroundMissesAQuarterOfStreetAndCourtyard) {
   }
 }
 
+// The one shipped scene of simple geometry: a flight around sees nearly all of it.
+TEST(SeenShare, OfTheTerraceNearlyNothingIsHidden) {
+  const GeneratedScene made = shipped_scene("terrace");
+  EXPECT_LE(made.mesh.triangles.size(), 2000u);
+  EXPECT_FALSE(ply_bytes(made.mesh) == ply_bytes(shipped_scene("terrace", 8).mesh));
+  const MeshScene scene(made.mesh);
+  EXPECT_LE(unseen_share(scene, made.region, hemisphere(made.region, 75, 200), 60000), 0.02);
+}
+
 class SceneScripts : public testing::Test {
  protected:
   void SetUp() override {
