@@ -134,6 +134,11 @@ TEST_F(StudioKinds, ZonesRegionsAndStartsAreEstimatedWhileTheyAreDragged) {
     EXPECT_GT(told.at("seen").as_number(), 0);
     EXPECT_LT(told.at("seen").as_number(), told.at("known").as_number());
   }
+  EXPECT_EQ(zone.at("changed"), Value(true));
+  // A second battery needs no other views.
+  const Value two = estimate(R"({"path": "batteries", "value": 2})");
+  EXPECT_EQ(two.at("tours"), Value(std::int64_t{2}));
+  EXPECT_EQ(two.at("changed"), Value(false));
   const Value far = estimate(region("[400, -33, 440, -33, 440, 31, 400, 31]"));
   EXPECT_EQ(far.find("images"), nullptr);
   EXPECT_NE(far.at("why").as_text().find("shows nothing of 100 %"), std::string::npos);
