@@ -7,18 +7,21 @@
 
 #include <algorithm>
 
+#include "framework/core/parallel.h"
+
 namespace lapwing {
 
 using Eigen::Vector3d;
 
 std::vector<float> shares_of_triangles(const TriangleMesh& mesh, const InterestRegion& region,
-                                       const VoxelGrid& grid, std::vector<VoxelShare> voxels) {
+                                       const VoxelGrid& grid, std::vector<VoxelShare> voxels,
+                                       int threads) {
   const auto before = [](const VoxelShare& a, const VoxelShare& b) { return a.voxel < b.voxel; };
   std::sort(voxels.begin(), voxels.end(), before);
   std::vector<float> shares(mesh.triangles.size(), kOutsideRegion);
-  for (std::size_t t = 0; t < shares.size(); ++t) {
+  parallel_for(shares.size(), threads, [&](std::size_t t) {
     const Vector3d middle = (mesh.corner(t, 0) + mesh.corner(t, 1) + mesh.corner(t, 2)) / 3;
-    if (!region.contains(middle)) continue;
+    if (!region.contains(middle)) return;
     shares[t] = kNeverVisible;
     const Vector3d step = 0.5 * grid.resolution() * mesh.normal(t);
     for (int k = -4; k <= 4; ++k) {
@@ -29,7 +32,7 @@ std::vector<float> shares_of_triangles(const TriangleMesh& mesh, const InterestR
       if (found != voxels.end() && found->voxel == wanted.voxel)
         shares[t] = std::max(shares[t], found->share);
     }
-  }
+  });
   return shares;
 }
 

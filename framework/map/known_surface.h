@@ -26,7 +26,8 @@ inline constexpr float kOutsideRegion = -2, kNeverVisible = -1;
 // passes, two voxels to either side; else the largest share of those that are. `voxels`
 // in any order, each key once.
 std::vector<float> shares_of_triangles(const TriangleMesh& mesh, const InterestRegion& region,
-                                       const VoxelGrid& grid, std::vector<VoxelShare> voxels);
+                                       const VoxelGrid& grid, std::vector<VoxelShare> voxels,
+                                       int threads = 1);
 
 struct SurfaceAreas {
   double known = 0;    // m^2 of the mesh in the region

@@ -2,6 +2,8 @@
 // The graph of views that tours are planned on.
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include <lua.hpp>
 
@@ -12,6 +14,7 @@
 #include "framework/mission/hidden_parts.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/scan_objects.h"
+#include "framework/view/changed_graph.h"
 
 namespace lapwing {
 
@@ -78,6 +81,7 @@ std::shared_ptr<const VisibleVoxels> make_sight(ScanWork& work, const MissionRun
         given.origin("region"),
         "the region of interest has no surface: the prior mesh does not reach into it");
   sight.across = static_cast<int>(given.integer("across"));
+  work.weighed_fully = sight.across == 0 || sight.across >= sight.pinhole.width;
   if (sight.across == 0) return work.visible;
   return std::make_shared<VisibleVoxels>(work.prior->mapping.map, work.prior->mesh, sight);
 }
@@ -319,7 +323,10 @@ constexpr BoundField kGraphObjects[] = {
     {"vehicle", "lapwing.vehicle", "vehicle"},
     {"rules?", "lapwing.flight_rules", "zones and a pilot that the flight keeps"},
     {"information", "lapwing.information", "information of a view about a voxel"},
-    {"planner", "lapwing.path_planner", "planner of paths around obstacles"}};
+    {"planner", "lapwing.path_planner", "planner of paths around obstacles"},
+    {"like?", "lapwing.scan_graph",
+     "graph of another region, other zones or starts, on the same prior: for an estimate its views "
+     "and motions are kept as far as they are allowed, and none are looked for"}};
 
 constexpr BoundField kTileObjects[] = {
     kGraphObjects[0], kGraphObjects[1],
@@ -387,28 +394,114 @@ GraphMaking graph_making(lua_State* state, const MissionRun& run, const Paramete
   return made;
 }
 
+// The share of a region's ground over and under which a mesh has nothing.
+double ground_without(const TriangleMesh& mesh, const InterestRegion& region) {
+  constexpr int kCells = 64;  // along either side
+  const Eigen::Vector2d low = region.bounds().min().head<2>();
+  const Eigen::Vector2d cell = region.bounds().sizes().head<2>() / kCells;
+  std::vector<char> known(kCells * kCells, 0);
+  for (const Eigen::Vector3d& p : mesh.vertices) {
+    const Eigen::Vector2d at = (p.head<2>() - low).cwiseQuotient(cell);
+    if ((at.array() >= 0).all() && (at.array() < kCells).all())
+      known[static_cast<std::size_t>(at.y()) * kCells + static_cast<std::size_t>(at.x())] = 1;
+  }
+  int cells = 0, unknown = 0;
+  for (int y = 0; y < kCells; ++y)
+    for (int x = 0; x < kCells; ++x) {
+      if (!region.heights_at(low + cell.cwiseProduct(Eigen::Vector2d(x + 0.5, y + 0.5)))) continue;
+      ++cells;
+      unknown += !known[static_cast<std::size_t>(y) * kCells + static_cast<std::size_t>(x)];
+    }
+  return cells > 0 ? static_cast<double>(unknown) / cells : 1;
+}
+
+// An estimate is to be right within a tenth: where more of the region than that is not known, none
+// is made.
+void require_known(const ScanWork& before, const InterestRegion& region, const MissionRun& run) {
+  constexpr double kMostUnknown = 0.1;
+  const InterestRegion& was = before.visible->settings().region;
+  if (!run.settings.observe_estimate || region == was) return;
+  const TriangleMesh& mesh = before.prior->mesh->mesh();
+  const double unknown = ground_without(mesh, region);
+  if (unknown - ground_without(mesh, was) <= kMostUnknown) return;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "the first flight of the plan before shows nothing of %.0f %% of this region",
+                100 * unknown);
+  Value told = Value::map();
+  told.set("why", text);
+  run.settings.observe_estimate(told);
+  throw Cancelled();
+}
+
+// Where nothing but rules is asked for.
+class OpenSpace final : public FreeSpace {
+ public:
+  bool point_free(const Eigen::Vector3d&) const override { return true; }
+  bool segment_free(const Eigen::Vector3d&, const Eigen::Vector3d&) const override { return true; }
+  bool swept_box_free(const Eigen::Vector3d&, const Eigen::Vector3d&,
+                      const Eigen::Vector3d&) const override {
+    return true;
+  }
+  Eigen::AlignedBox3d bounds() const override {
+    const Eigen::Vector3d all = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+    return {-all, all};
+  }
+};
+
+// The graph of a plan before, for an estimate. Pinned views are the last of those that are given.
+void change_graph(const ScanWork& before, const GraphMaking& made,
+                  const std::vector<Viewpoint>& starts, const std::vector<Viewpoint>& pinned,
+                  const MissionRun& run) {
+  ScanWork& work = *made.work;
+  const InterestRegion& was = before.visible->settings().region;
+  std::unique_ptr<FreeSpace> rules;
+  if (!work.rules->empty())
+    rules = ruled(std::make_unique<OpenSpace>(), *work.rules, work.prior->mapping.map);
+  work.graph =
+      changed_graph(before.graph, was, *made.space, rules.get(), *made.sight, *work.information,
+                    starts, pinned, made.settings, run.settings.cancellation);
+  const int first = work.graph.candidates.given - static_cast<int>(pinned.size());
+  if (first < 1)
+    throw InputError("zones and the region leave none of the places where tours could begin");
+  std::iota(work.pinned.begin(), work.pinned.end(), first);
+}
+
 // run:scan_graph{prior =, vehicle =, region =, allowed =, starts =, ...}
 int scan_graph_of_run(lua_State* state) {
   MissionRun& run = run_of(state);
   const Parameters given = table_argument(state, 2, graph_table(), "scan_graph", kGraphObjects);
+  lua_getfield(state, 2, "like");
+  const auto* like = test_object<GraphObject>(state, -1, kGraphType);
+  if (like) require_known(*like->work, region_of(given.table("region")), run);
   const GraphMaking made = graph_making(state, run, given);
   const std::shared_ptr<ScanWork>& work = made.work;
   const ScanGraphSettings& settings = made.settings;
   const Sandbox::ClockPause pause(Sandbox::of(state));
+  const bool begun = like && given.tables("starts").empty();  // at those of the graph before
   std::vector<Viewpoint> starts =
-      free_starts(given.tables("starts"), static_cast<std::size_t>(given.integer("needed")),
-                  given.boolean("loops"), *made.space, settings.candidates, *work->rules);
+      begun ? std::vector<Viewpoint>()
+            : free_starts(given.tables("starts"), static_cast<std::size_t>(given.integer("needed")),
+                          given.boolean("loops"), *made.space, settings.candidates, *work->rules);
+  const std::size_t first_pinned = starts.size();
   add_pinned(given.tables("pinned"), *made.space, settings.candidates, *work->rules, starts,
              work->pinned);
-  begin_planning(run);
-  make_graph(*work, *made.space, *made.sight, starts, settings, run);
+  if (like) {
+    const std::vector<Viewpoint> pinned(starts.begin() + static_cast<std::ptrdiff_t>(first_pinned),
+                                        starts.end());
+    starts.resize(first_pinned);
+    change_graph(*like->work, made, starts, pinned, run);
+  } else {
+    begin_planning(run);
+    make_graph(*work, *made.space, *made.sight, starts, settings, run);
+  }
   if (given.boolean("each"))
     work->graph.score = std::make_shared<const ViewScore>(
         additive_score(std::vector<double>(work->graph.candidates.viewpoints.size(), 1)));
   if (!work->pinned.empty())
     work->pinned_score =
         std::make_shared<const ViewScore>(with_bonus(*work->graph.score, work->pinned));
-  if (!work->rules->empty())
+  if (!work->rules->empty() && !like)
     work->hidden =
         hidden_parts(*work, *space_of(*work->prior, given.number("mesh_room")), *made.sight, starts,
                      settings, work->forbidden, run.settings.cancellation);

@@ -43,7 +43,8 @@ class MeshScene;
 // large ones the last alone.
 struct ScanMemory {
   struct Entry {
-    std::string key;  // what it was made from, as text
+    std::string key;   // what it was made from, as text
+    std::string near;  // likewise, without what an estimate may differ in
     std::shared_ptr<const ScanWork> work;
   };
   std::deque<Entry> entries;  // the newest first

@@ -142,6 +142,7 @@ int solve_tour_of_run(lua_State* state) {
   TourRequest request;
   request.seed = run.settings.seed;
   if (given.integer("iterations") > 0) request.iteration_limit = given.integer("iterations");
+  if (run.settings.observe_estimate) request.iteration_limit = kEstimateIterations;
   if (given.integer("evaluations") > 0) request.evaluation_limit = given.integer("evaluations");
   if (given.has("guard")) request.wall_clock_guard = given.number("guard");
   request.cancellation = run.settings.cancellation;
@@ -177,13 +178,15 @@ int solve_tour_of_run(lua_State* state) {
 constexpr BoundField kEstimateObjects[] = {
     {"tours", "lapwing.tour[]", "solved tours of one graph"}};
 ParameterTable estimate_table() {
-  return {};
+  ParameterTable table;
+  table.boolean("changed", false, "true: the graph was made from one of other options");
+  return table;
 }
 
 // run:estimate{tours =}: where only that is asked for, plans end here.
 int estimate_of_run(lua_State* state) {
   MissionRun& run = run_of(state);
-  table_argument(state, 2, estimate_table(), "estimate", kEstimateObjects);
+  const Parameters given = table_argument(state, 2, estimate_table(), "estimate", kEstimateObjects);
   if (!run.settings.observe_estimate) return 0;
   std::vector<int> views;
   double seconds = 0;
@@ -211,6 +214,7 @@ int estimate_of_run(lua_State* state) {
   told.set("tours", flown);
   told.set("images", static_cast<std::int64_t>(views.size()));
   told.set("seconds", seconds);
+  told.set("changed", given.boolean("changed"));
   told.set("known", areas.known);
   told.set("seen", areas.seen);
   run.settings.observe_estimate(told);
@@ -245,7 +249,7 @@ int first_flight_of_run(lua_State* state) {
       corners.push_back(Value(Value::List{p.x(), p.y()}));
     images.push_back(std::move(one));
   }
-  run.settings.observe_first_flight(told);
+  if (!given.tables("poses").empty()) run.settings.observe_first_flight(told);
   if (run.settings.first_flight_alone) throw Cancelled();
   return 0;
 }

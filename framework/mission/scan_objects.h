@@ -64,6 +64,7 @@ struct HiddenPart {
 struct ScanWork : LegFlight {
   std::shared_ptr<Prior> prior;
   std::shared_ptr<const VisibleVoxels> visible;  // through every pixel of the camera
+  bool weighed_fully = false;                    // so is the score of the graph
   std::shared_ptr<const ViewInformation> information;
   ScanGraph graph;
   std::vector<double> seconds;  // of each motion, a view's own included
@@ -156,6 +157,9 @@ ParameterTable region_table();
 InterestRegion region_of(const Parameters& given);
 ParameterTable pinhole_table();
 Pinhole pinhole_of(const Parameters& given);
+
+// Iterations of a solver where a tour is only estimated, while something is dragged.
+inline constexpr std::int64_t kEstimateIterations = 500;
 
 // Of a graph's tours from its home back to it, without a budget. InputError, which names the
 // function, where the graph is of passes.

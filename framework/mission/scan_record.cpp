@@ -42,6 +42,23 @@ std::vector<VoxelShare> coverage_of(const ScanWork& work, const std::vector<int>
   return coverage;
 }
 
+// The same of a score that was weighed through every pixel.
+std::vector<VoxelShare> coverage_in(const ScanGraph& graph, const std::vector<int>& views) {
+  const auto capacities = graph.score->capacities();
+  std::vector<VoxelShare> coverage(graph.voxels.size());
+  for (std::size_t v = 0; v < coverage.size(); ++v) coverage[v] = {graph.voxels[v], 0};
+  for (const int view : views) {
+    const auto voxels = graph.score->voxels_of(view);
+    const auto amounts = graph.score->amounts_of(view);
+    for (std::size_t i = 0; i < voxels.size(); ++i) {
+      float& share = coverage[voxels[i]].share;
+      share = std::min(
+          1.0f, share + static_cast<float>(amounts[i]) / static_cast<float>(capacities[voxels[i]]));
+    }
+  }
+  return coverage;
+}
+
 // The views of a walk, each once, in its order.
 std::vector<int> views_of_walk(const std::vector<int>& walk) {
   std::vector<int> views;
@@ -131,7 +148,9 @@ SurfaceAreas areas_seen(const ScanWork& work, const std::vector<int>& views, int
   const InterestRegion& region = work.visible->settings().region;
   return areas_of(mesh,
                   shares_of_triangles(mesh, region, work.prior->mapping.map->grid(),
-                                      coverage_of(work, views, threads)),
+                                      work.weighed_fully ? coverage_in(work.graph, views)
+                                                         : coverage_of(work, views, threads),
+                                      threads),
                   region);
 }
 

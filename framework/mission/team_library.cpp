@@ -121,6 +121,7 @@ TeamRequest team_request(lua_State* state, const MissionRun& run, const Paramete
   TeamRequest request;
   request.limits.seed = run.settings.seed;
   if (given.integer("iterations") > 0) request.limits.iteration_limit = given.integer("iterations");
+  if (run.settings.observe_estimate) request.limits.iteration_limit = kEstimateIterations;
   if (given.integer("evaluations") > 0)
     request.limits.evaluation_limit = given.integer("evaluations");
   if (given.has("guard")) request.limits.wall_clock_guard = given.number("guard");

@@ -230,18 +230,25 @@ class StudioWorker {
     if (!whole_->cancelled()) plan_whole(layer, before);
   }
 
-  // What a drag of budget or batteries comes to: its tours on the graph of a plan before. A drag
-  // that needs another graph is planned when it is let go of.
+  // What a drag of a scan comes to: its tours on the graph of a plan before, changed where regions,
+  // zones or starts are dragged. What needs another first flight is planned when it is let go of.
   void estimate(const Value& layer) {
     MissionSettings settings = settings_;
     settings.cancellation = whole_.get();
     settings.scan_memory = scan_memory();
     Value estimate = Value::map();
+    bool drawn = false;
     settings.observe_estimate = [&](const Value& told) { estimate = told; };
+    settings.observe_first_flight = [&](const Value& told) {
+      tell_first_flight(told);
+      drawn = true;
+    };
     try {
       if (!settings.scan_memory->entries.empty())
         configured_mission(script_, settings, layer)->plan();
     } catch (const Cancelled&) {
+    } catch (const InputError& error) {
+      estimate.set("why", as_utf8(error.what()));
     }
     if (whole_->cancelled()) return;
     const bool other_views = estimate.as_map().empty();
@@ -249,7 +256,7 @@ class StudioWorker {
     frame.header.set("said", "estimate");
     frame.header.set("estimate", std::move(estimate));
     send(std::move(frame), serial_);
-    if (other_views) draw_first_flight(layer);
+    if (other_views && !drawn) draw_first_flight(layer);
   }
 
   // Of a drag: the images of the first flight, before it is flown.

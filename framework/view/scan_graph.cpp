@@ -3,64 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "framework/core/error.h"
 #include "framework/core/parallel.h"
 #include "framework/core/random.h"
+#include "framework/view/graph_parts.h"
 
 namespace lapwing {
 namespace {
 
 constexpr std::size_t kChunk = 64;  // views that are held unpacked
-constexpr double kMostCubes = 268435456.0;
-constexpr std::uint32_t kUnseen = std::numeric_limits<std::uint32_t>::max();
-
-// Numbers for the voxels of a box, given in the order in which they are first asked for. They are
-// kept in cubes, of which only those with numbers take memory.
-class VoxelNumbers {
- public:
-  VoxelNumbers(const Eigen::AlignedBox3d& region, const VoxelGrid& grid) {
-    double count = 1;
-    for (int axis = 0; axis < 3; ++axis) {
-      low_[axis] = grid.index(region.min()[axis]);
-      const int high = grid.index(region.max()[axis]);
-      size_[axis] = static_cast<std::size_t>((high - low_[axis]) >> kBits) + 1;
-      count *= static_cast<double>(size_[axis]);
-    }
-    if (count > kMostCubes)
-      throw InputError(
-          "the region of interest has more than 2^37 voxels: set a larger resolution or a smaller "
-          "region, or the unit of the mesh file");
-    cubes_.resize(static_cast<std::size_t>(count));
-  }
-
-  std::uint32_t number(const VoxelKey& key) {
-    std::size_t cube = 0, place = 0;
-    for (int axis = 2; axis >= 0; --axis) {
-      const auto at = static_cast<std::size_t>(key[axis] - low_[axis]);
-      cube = cube * size_[axis] + (at >> kBits);
-      place = place << kBits | (at & ((1u << kBits) - 1));
-    }
-    std::vector<std::uint32_t>& numbers = cubes_[cube];
-    if (numbers.empty()) numbers.assign(std::size_t{1} << 3 * kBits, kUnseen);
-    if (numbers[place] == kUnseen) {
-      numbers[place] = static_cast<std::uint32_t>(voxels_.size());
-      voxels_.push_back(key);
-    }
-    return numbers[place];
-  }
-  std::size_t count() const { return voxels_.size(); }
-  std::vector<VoxelKey> take() { return std::move(voxels_); }
-
- private:
-  static constexpr int kBits = 3;  // of the edge of a cube
-
-  int low_[3];
-  std::size_t size_[3];
-  std::vector<std::vector<std::uint32_t>> cubes_;
-  std::vector<VoxelKey> voxels_;
-};
 
 struct Told {
   VoxelKey voxel;
@@ -142,17 +94,6 @@ std::shared_ptr<const ViewScore> score_views(const VisibleVoxels& visible,
   return std::make_shared<const ViewScore>(std::move(builder).take());
 }
 
-// The level of the cubes in which coarse views are compared.
-int coarse_level(const VisibleVoxels& visible, int across) {
-  const SightSettings& sight = visible.settings();
-  const double share = static_cast<double>(across) / sight.pinhole.width;
-  const double shown = sight.range / (share * sight.pinhole.focal_x);
-  int level = 0;
-  while (level < kTreeDepth - 1 && std::ldexp(visible.map().grid().resolution(), level) < shown)
-    ++level;
-  return level;
-}
-
 // In the order of keys, each once.
 std::vector<VoxelKey> in_cubes(std::vector<VoxelKey> keys, int level) {
   for (VoxelKey& key : keys)
@@ -165,6 +106,21 @@ std::vector<VoxelKey> in_cubes(std::vector<VoxelKey> keys, int level) {
 }
 
 }  // namespace
+
+int coarse_level(const VisibleVoxels& visible, int across) {
+  const SightSettings& sight = visible.settings();
+  const double share = static_cast<double>(across) / sight.pinhole.width;
+  const double shown = sight.range / (share * sight.pinhole.focal_x);
+  int level = 0;
+  while (level < kTreeDepth - 1 && std::ldexp(visible.map().grid().resolution(), level) < shown)
+    ++level;
+  return level;
+}
+
+std::vector<VoxelKey> coarse_cubes(const VisibleVoxels& visible, const Viewpoint& view, int across,
+                                   int level) {
+  return in_cubes(visible.seen_coarsely_from(view, across), level);
+}
 
 std::vector<float> contributions_of(const std::vector<SeenVoxel>& seen,
                                     const ViewInformation& information) {
@@ -204,8 +160,7 @@ ScanGraph make_scan_graph(const FreeSpace& space, const VisibleVoxels& visible,
         views.size(), settings.threads, cancellation, Share(progress, kSeen, kCompared),
         "coarse view",
         [&](std::size_t view, std::size_t place) {
-          chunk[place] =
-              in_cubes(visible.seen_coarsely_from(views[view], settings.coarse_across), level);
+          chunk[place] = coarse_cubes(visible, views[view], settings.coarse_across, level);
         },
         [&](std::size_t place) { coarse[next++] = std::move(chunk[place]); });
   }

@@ -52,6 +52,8 @@ class VisibleVoxels {
 
   const SightSettings& settings() const { return settings_; }
   const Map& map() const { return *map_; }
+  const std::shared_ptr<const Map>& shared_map() const { return map_; }
+  const std::shared_ptr<const MeshScene>& prior() const { return prior_; }
   // What a voxel counts; 0 outside the region.
   double weight(const VoxelKey& voxel) const { return counts(voxel) ? region_->weight(voxel) : 0; }
 

@@ -47,7 +47,8 @@ local function check(run)
   first.check(run)
 end
 
-local function graph_of(run, known, vehicle, starts, finish)
+-- `like`: of a plan near it, for an estimate.
+local function graph_of(run, known, vehicle, starts, finish, like)
   local o = run.options
   local gimbal = vehicle.gimbal
   local c = o.candidates
@@ -68,6 +69,7 @@ local function graph_of(run, known, vehicle, starts, finish)
     information = o.information, planner = o.planner,
   }
   wishes.settle(run, graph)
+  graph.like = like
   if tiles.wanted(run) then
     known:simplify()
     starts = tiles.starts(run, graph, starts, finish)
@@ -124,7 +126,7 @@ local function plan_of(run, graph, vehicle, finish, known, explored, begin)
   for round = 1, TIGHTER do
     begin("tour")
     local tour, evaluations = solved(run, graph, finish, budget)
-    run:estimate { tours = { tour } }
+    run:estimate { tours = { tour }, changed = memory.changed(run) }
     local notes = words.notes(run, known, explored, string.format(
       "%d candidates, %d motions", graph.candidates, graph.motions))
     local little = words.little_used(run, tour, budget)
@@ -164,16 +166,16 @@ local function planned(run)
   tiles.check(run, in_passing)
   local seconds = exploration.seconds(run, vehicle, tours.budget(run))
   phases.expect(run, tours.budget(run) * math.max(o.batteries, o.drones), in_passing)
-  local kept, known = memory.recall(run, in_passing)
+  local kept, known, same = memory.recall(run, in_passing)
   local poses, surface, explored, starts, finish
-  if kept then
+  if kept and same then
     first.remind(run)
     finish = o.finish and 2 or 1
   else
     known, poses, surface, explored =
-      first.knowledge(run, seconds, vehicle, in_passing and passing.air(run, vehicle))
+      first.knowledge(run, seconds, vehicle, in_passing and passing.air(run, vehicle), known)
     poses = views.poses(run, known, poses)
-    if not in_passing then starts, finish = fleet.starts(run, poses) end
+    if not in_passing then starts, finish = fleet.starts(run, kept and {} or poses) end
   end
   local plan
   for round = 1, o.rounds do
@@ -182,8 +184,8 @@ local function planned(run)
       plan = passing.plan(run, vehicle, known, tours.budget(run), begin)
     else
       begin("views")
-      local graph = kept or graph_of(run, known, vehicle, starts, finish)
-      if not kept then memory.keep(run, in_passing, graph) end
+      local graph = same and kept or graph_of(run, known, vehicle, starts, finish, kept)
+      if not same then memory.keep(run, in_passing, graph) end
       local last = o.finish and finish or graph.home  -- a loop, unless said otherwise
       if fleet.wanted(run) then
         plan = fleet.plan(run, graph, vehicle, known, explored, begin)

@@ -2,6 +2,7 @@
 -- The first flight of a scan and its results (thesis 4.3): a map, a mesh, free places. Only the
 -- simulator uses the scene itself.
 local city = require "mission.scan_city"
+local checks = require "mission.scan_first_checks"
 local exploration = require "mission.scan_exploration"
 local images = require "mission.scan_images"
 local meshing = require "mission.scan_meshing"
@@ -14,28 +15,6 @@ local M = {}
 
 local warnings = setmetatable({}, { __mode = "k" })  -- of runs: what the user should know
 local sparse = setmetatable({}, { __mode = "k" })    -- likewise
-
--- What files of an earlier flight leave open: all of it at once, with where the mesh is.
-local function check_prior(run)
-  local o, files = run.options, space.prior_files(run)
-  if not files or exploration.wanted(run) then return end
-  local flown_in = o.scene or o.input
-  local lacks, give = {}, {}
-  if not (o.start or #o.fleet.starts > 0 or flown_in and #o.flights > 0) then
-    lacks[1], give[1] = "the start of the tour", "start = {x, y, z}"
-  end
-  if not (flown_in or #o.regions > 0 or o.region.lower and o.region.upper) then
-    lacks[#lacks + 1] = "the region of interest"
-    give[#give + 1] = "region = { lower = {x, y, z}, upper = {x, y, z} }"
-  end
-  if #lacks == 0 then return end
-  local mesh = run:read_surface { file = files.mesh }
-  local from, to = mesh.lower, mesh.upper
-  run:fail("prior", string.format(
-    "files of an earlier flight do not state %s: give %s. The mesh '%s' lies between "
-    .. "{%.4g, %.4g, %.4g} and {%.4g, %.4g, %.4g}", table.concat(lacks, " and "),
-    table.concat(give, " and "), files.mesh, from[1], from[2], from[3], to[1], to[2], to[3]))
-end
 
 -- What is wrong before anything is flown.
 function M.check(run)
@@ -52,7 +31,7 @@ function M.check(run)
              "is for the mesh file of input, which is not set (the mesh of a prior "
              .. "is in the frame of its map)")
   end
-  check_prior(run)
+  checks.prior(run)
   zones.check(run)
   local region = o.region
   if region.lower and region.upper then
@@ -64,36 +43,6 @@ function M.check(run)
       end
     end
   end
-end
-
--- Checks `range`: at least one first flight must see the upper side of the region in its steepest
--- images. A warning states if none sees the floor, because the space near it then stays unknown.
-local function check_range(run)
-  local o, region, range = run.options, space.region_of(run), space.range(run)
-  local half = math.atan(o.camera.height / 2, o.camera.focal)
-  local function nearest(z)
-    local least = math.huge
-    for _, flight in ipairs(space.flights_of(run)) do
-      local steepest = math.min(math.pi / 2, half - math.rad(space.pitch_of(flight)))
-      if steepest > 0 then
-        least = math.min(least, (space.height_of(run, flight) - z) / math.sin(steepest))
-      end
-    end
-    return least
-  end
-  local cure = "a longer range, steeper images (flights, pitch_deg) or a lower safe_height"
-  local floor, upper = nearest(region.lower[3]), nearest(region.upper[3])
-  if upper > range then
-    run:fail("range", string.format(
-      "no first flight sees the region: the shortest ray to its upper side is "
-      .. "%.4g m long, and depth is measured up to %g m; use %s", upper, range, cure))
-  end
-  if floor <= range then return nil end
-  local warning = string.format(
-    "no first flight sees the floor of the region: the shortest ray is %.4g m long, and depth is "
-    .. "measured up to %g m; use %s", floor, range, cure)
-  print("warning: " .. warning)
-  return warning
 end
 
 -- What the user should know of the first flight, or nothing.
@@ -173,7 +122,7 @@ function M.remind(run)
   local o, files = run.options, space.prior_files(run)
   if not (o.scene or o.input) or files and #o.flights == 0 then return end
   zones.allowed(run, survey_poses(run))
-  if not files then warnings[run] = check_range(run) end
+  if not files then warnings[run] = checks.range(run) end
   sparse[run] = space.sparse(run)
   if sparse[run] then print("note: " .. sparse[run]) end
 end
@@ -184,12 +133,30 @@ local function tell(run, poses)
                      level = space.region_of(run).lower[3] }
 end
 
+-- Where the first flight would take its images, for an estimate on the map of a plan before.
+local function expected(run)
+  local o, files = run.options, space.prior_files(run)
+  local poses = {}
+  if (o.scene or o.input) and not (files and #o.flights == 0) then
+    poses = zones.allowed(run, survey_poses(run))
+    tell(run, poses)
+  end
+  zones.check_home(run, space.room(run, poses), space.safe_height(run))
+  return poses
+end
+
 -- The prior with its mesh, the poses of the first flights, the simulated surface or nil, and the
 -- exploration or nil, which has at most `seconds`. `air` is a box that is free above the safe
--- height as well.
-function M.knowledge(run, seconds, vehicle, air)
+-- height as well. For an estimate, `before` is the prior of a plan before: then nothing is flown.
+function M.knowledge(run, seconds, vehicle, air, before)
+  if before then return before, expected(run) end
+  local o, files = run.options, space.prior_files(run)
+  if site.wanted(run) or images.wanted(run) or exploration.wanted(run)
+     or files and #o.flights == 0 then
+    -- Where only a first flight is asked for, the plan ends here, before anything takes time.
+    run:first_flight { poses = {}, camera = o.camera }
+  end
   if site.wanted(run) then return surveyed(run, air) end
-  local o = run.options
   if images.wanted(run) then
     local known, allowed = new_prior(run), space.room(run, {})
     local function open(prior) open_air(run, prior, nil, {}, air) end
@@ -197,7 +164,7 @@ function M.knowledge(run, seconds, vehicle, air)
     local places = images.knowledge(run, known, space.range(run), allowed, o.safe_height and open)
     return known, zones.allowed(run, places)
   end
-  local files, surface = space.prior_files(run), space.surface_of(run)
+  local surface = space.surface_of(run)
   if not surface and not files then
     lapwing.fail("no scene: name a scene, a mesh with --set input=PATH (.obj, .ply, .dae, "
                  .. "...), or the files of an earlier flight with prior = { map =, mesh = }")

@@ -3,6 +3,7 @@
 -- orienteering problem), and the fleet of plans that fly them.
 local accuracy = require "mission.scan_accuracy"
 local first = require "mission.scan_first"
+local memory = require "mission.scan_memory"
 local patterns = require "mission.scan_patterns"
 local space = require "mission.scan_space"
 local tours = require "mission.scan_tours"
@@ -225,7 +226,7 @@ function M.plan(run, graph, vehicle, known, explored, begin)
     end, batteries)
     batteries = #team.tours
     wishes.require_all(run, team, graph, string.format("of %d of %.4g s", batteries, budget))
-    run:estimate { tours = team.tours }
+    run:estimate { tours = team.tours, changed = memory.changed(run) }
     local plans, drones, longest = flown(run, vehicle, team, asked, begin, shared)
     shared = plans[1]
     -- Corners and rests may take a little more than the legs one by one.

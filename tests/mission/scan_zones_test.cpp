@@ -125,6 +125,22 @@ TEST_F(ScanZones, ZonesThatCloseTheStartInAreRefused) {
               HasSubstr("no_fly_zones[1]: its edges 1 and 3 cross"));
 }
 
+// Where only a first flight is asked for and there is none, nothing is planned in its place.
+TEST_F(ScanZones, WhereThereIsNoFirstFlightNoneIsTold) {
+  write_file_atomically(folder_ / "shot.lua", R"(return require('mission.scan').of_scene {
+    name = 'hut', scene = 'hut', resolution = 0.5, exploration = { images = 3 },
+    start = {-15, 0, 5}, camera = { width = 60, height = 45, focal = 34 } })");
+  int told = 0;
+  MissionSettings alone = settings();
+  alone.observe_first_flight = [&](const Value&) { ++told; };
+  alone.first_flight_alone = true;
+  Mission mission(folder_ / "shot.lua", alone);
+  mission.configure({}, {});
+  EXPECT_THROW(mission.plan(), Cancelled);
+  EXPECT_EQ(told, 0);
+  EXPECT_FALSE(mission.planning_began());
+}
+
 // Four walls of zones around the home, without a way out.
 TEST_F(ScanZones, ZonesThatCloseTheHomeInAreRefused) {
   std::string zones = "no_fly_zones = { ";

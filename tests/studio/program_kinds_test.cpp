@@ -102,6 +102,61 @@ TEST_F(StudioKinds, ABudgetIsEstimatedWhileItIsDraggedAndPlannedOnTheSameViews) 
   near(estimate.at("seen"), world.at("scan").at("areas").at("seen").as_number());
 }
 
+// A zone, a region and a start that are dragged are estimated on the views of the plan before.
+// Where a region was never seen, and where a place cannot be, that is said in words.
+TEST_F(StudioKinds, ZonesRegionsAndStartsAreEstimatedWhileTheyAreDragged) {
+  use("scan/church.lua");
+  const std::vector<std::string> options{"--config", "scan/small", "--set", "resolution=1"};
+  const StudioAddress address = serve(options);
+  PageClient page(address, "a");
+  told(page);
+  int edit = 0;
+  const auto estimate = [&](const std::string& patch) {
+    page.send_text(R"({"type": "preview", "edit": )" + std::to_string(++edit) + R"(, "patch": [)" +
+                   patch + "]}");
+    return page.until([&](const Value& m) {
+      return m.at("type") == Value("estimate") && m.at("edit") == Value(std::int64_t{edit});
+    });
+  };
+  const auto region = [](const std::string& corners) {
+    return R"({"path": "regions", "value": [{"name": "site", "from": -0.3, "to": 46, "corners": )" +
+           corners + "}]}";
+  };
+  const Value zone = estimate(R"({"path": "no_fly_zones", "value": [
+      {"name": "tower", "corners": [22, -10, 45, -10, 45, 20, 22, 20]}]})");
+  const Value moved = estimate(region("[-14, -28, 26, -28, 26, 36, -14, 36]"));
+  const Value start = estimate(R"({"path": "start", "value": [-30, -20, 52]})");
+  for (const Value& told : {zone, moved, start}) {
+    ASSERT_NE(told.find("images"), nullptr) << to_json(told);
+    EXPECT_GT(told.at("images").as_integer(), 5);
+    EXPECT_LE(told.at("seconds").as_number(), 300);
+    EXPECT_GT(told.at("seconds").as_number(), 240);
+    EXPECT_GT(told.at("seen").as_number(), 0);
+    EXPECT_LT(told.at("seen").as_number(), told.at("known").as_number());
+  }
+  EXPECT_EQ(zone.at("changed"), Value(true));
+  // A second battery needs no other views.
+  const Value two = estimate(R"({"path": "batteries", "value": 2})");
+  EXPECT_EQ(two.at("tours"), Value(std::int64_t{2}));
+  EXPECT_EQ(two.at("changed"), Value(false));
+  const Value far = estimate(region("[400, -33, 440, -33, 440, 31, 400, 31]"));
+  EXPECT_EQ(far.find("images"), nullptr);
+  EXPECT_NE(far.at("why").as_text().find("shows nothing of 100 %"), std::string::npos);
+  const Value closed = estimate(R"({"path": "no_fly_zones", "value": [
+      {"name": "all", "corners": [-90, -90, 90, -90, 90, 90, -90, 90]}]})");
+  EXPECT_NE(closed.at("why").as_text().find("forbid all 40 images"), std::string::npos);
+  // Within a tenth of the images and the seconds that the run plans.
+  std::vector<std::string> words{"run",   script_.string(),      "-o", "flown", "--json",
+                                 "--set", "start=[-30, -20, 52]"};
+  words.insert(words.end(), options.begin(), options.end());
+  EXPECT_EQ(run(words), 0) << errors_;
+  const Plan plan = read_plan(folder_ / "flown/plan.json");
+  const double seconds = plan.trajectory.duration();
+  const auto images = static_cast<double>(plan.task.scan->views.size());
+  EXPECT_NEAR(start.at("seconds").as_number(), seconds, 0.1 * seconds);
+  EXPECT_NEAR(start.at("images").as_number(), images, 0.1 * images);
+}
+
 // A file that the mission reads changes: nothing of the plan before is kept.
 TEST_F(StudioKinds, ViewsOfThePlanBeforeGoWithTheFilesThatTheyAreOf) {
   fs::create_directories(folder_ / "scene");

@@ -6,7 +6,7 @@ import { applied, valueAt } from "../src/state/document";
 import { addedCorner, corneredItem, deleted, entryOf, moved, nameOf, placeOfItem, type Edit } from
   "../src/state/edits";
 import { figuresInWords, predictionIn, shadeOf } from "../src/state/prediction";
-import { forbiddenView, pinnedView, pinOf, viewAtTime, viewsOf, addedPolygon, aroundSite, frustum, prismLines, rectangle, regionsOf } from "../src/state/site";
+import { estimateInWords, forbiddenView, pinnedView, pinOf, viewAtTime, viewsOf, addedPolygon, aroundSite, frustum, prismLines, rectangle, regionsOf } from "../src/state/site";
 import type { JsonObject, ScanWorld, Vec3 } from "../src/state/types";
 import { itemsOf } from "../src/view/pins";
 
@@ -62,6 +62,16 @@ test("a view is pinned as the plan has it, moved, let go, or forbidden", () => {
   // What is forbidden is not pinned any more.
   const without = after(pinned, forbiddenView(pinned, view));
   assert.deepEqual([without.pinned, without.forbidden], [[], [{ position: [0, 1.235, 5], within: 1 }]]);
+});
+
+test("an estimate says how far it goes, and why there is none", () => {
+  const told = { type: "estimate", edit: 1, tab: "a", tours: 1, images: 20, seconds: 120, known: 200,
+                 seen: 50 } as const;
+  assert.equal(estimateInWords(told), "About 20 images in 2 min, 25 % of the known surface");
+  assert.match(estimateInWords({ ...told, tours: 2, changed: true }), /^Roughly 20 .* of 2 tours/);
+  assert.equal(estimateInWords({ type: "estimate", edit: 1, tab: "a", why: "nothing is known" }),
+               "Let go to plan it: nothing is known");
+  assert.match(estimateInWords({ type: "estimate", edit: 1, tab: "a" }), /no views of this state/);
 });
 
 test("views are those of one tour, by the play head", () => {

@@ -284,6 +284,8 @@ export interface Estimate {
   edit: number;
   tab: string;
   tours?: number;            // no figures where the views of this state are not at hand
+  why?: string;              // there are no figures
+  changed?: boolean;         // of views of a plan with another region, other zones or starts
   images?: number;
   seconds?: number;          // of all tours
   known?: number;            // m^2 of surface
