@@ -312,6 +312,8 @@ void read_fields(MessageFields& fields, PageMessage& message) {
       return read_id(fields, message);
     case Type::view:
       return read_view(fields, message);
+    case Type::backdrop:
+      return;
   }
 }
 
@@ -361,6 +363,8 @@ const char* to_string(PageMessageType type) {
       return "left_out";
     case Type::view:
       return "view";
+    case Type::backdrop:
+      return "backdrop";
   }
   return "";
 }

@@ -33,6 +33,7 @@ enum class PageMessageType {
   slice,
   left_out,
   view,
+  backdrop,  // no page says it: the server's own errand
 };
 // Of the planning of an exploration.
 enum class Pace { run, pause, step };

@@ -17,6 +17,7 @@
 //   describe                 described {schema, choices}
 //   fly {conditions}         done {...} [samples]        of the plan document in the first part
 //   picture, export, export_lua, save_report             done {...}, or failed {why}
+//   backdrop {file}          done [members of the message, picture]; without parts: as before
 //   race, stick              done {files} [state]        a race that is flown by hand
 //   voxel, slice, left_out, view {folder}   done {blobs} [members of the answer, blobs], or failed;
 //                            also while a plan is solved (worker_looks.h)

@@ -175,6 +175,7 @@ Frame WorkerErrands::answer(const Frame& asked) {
   if (what == "save_report") return save_report(asked);
   if (what == "list_runs") return list_runs();
   if (what == "open_run") return open_run(asked);
+  if (what == "backdrop") return backdrop(asked);
   if (what == "race") return games_.begin(asked, plan_in(asked));
   if (what == "stick") return games_.stick(asked);
   throw Error("a working process does not know '" + what + "'");
@@ -448,6 +449,14 @@ Frame WorkerErrands::open_run(const Frame& asked) const {
                      ? "null"
                      : certificate_message(Certificate::from_value(shown.plan.certificate)),
                  std::move(shown.growth), std::move(shown.sights)};
+  return frame;
+}
+
+// Without parts where what was shown last still holds.
+Frame WorkerErrands::backdrop(const Frame& asked) {
+  Frame frame = done();
+  if (const auto shown = backdrop_.shown_for(asked.header.at("file").as_text(), plan_in(asked)))
+    frame.parts = {shown->members, shown->picture};
   return frame;
 }
 

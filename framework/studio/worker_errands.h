@@ -8,6 +8,7 @@
 #include <string>
 
 #include "framework/mission/mission.h"
+#include "framework/studio/backdrop.h"
 #include "framework/studio/frames.h"
 #include "framework/studio/worker_games.h"
 #include "framework/vehicle/closed_loop.h"
@@ -55,6 +56,7 @@ class WorkerErrands {
   Frame save_report(const Frame& asked) const;
   Frame list_runs() const;
   Frame open_run(const Frame& asked) const;
+  Frame backdrop(const Frame& asked);
   // With the shapes of its obstacles open.
   Plan with_shapes(const Frame& asked);
   void state_environment(const Plan& plan, const Value& layer,
@@ -71,6 +73,7 @@ class WorkerErrands {
   std::string drawn_trajectory_;         // whose simulated flight is kept, of light paintings
   FlownPath drawn_;
   WorkerGames games_;
+  Backdrop backdrop_;
   std::set<std::filesystem::path> stated_reads_;
   std::string stated_looks_;  // of those files, when they were read
 };

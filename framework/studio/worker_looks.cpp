@@ -19,7 +19,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-constexpr std::size_t kMostKept = 4;
+constexpr std::size_t kMostLookedAt = 4;
 constexpr std::size_t kSmall = std::size_t{64} << 20;     // bytes of a graph
 constexpr std::size_t kMostCells = std::size_t{1} << 20;  // of a slice
 constexpr int kPictureAcross = 320, kPictureDown = 240;   // pixels at most
@@ -262,7 +262,7 @@ void WorkerLooks::keep(const std::string& folder, std::vector<KeptTour> tours) {
     return one.folder == folder || !small || bytes_of(*one.tours.front().work) > kSmall;
   });
   kept_.push_back({folder, std::move(tours)});
-  if (kept_.size() > kMostKept) kept_.pop_front();
+  if (kept_.size() > kMostLookedAt) kept_.pop_front();
 }
 
 void WorkerLooks::ask(Frame question) {

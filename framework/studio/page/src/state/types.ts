@@ -370,6 +370,23 @@ export interface ViewAnswer {
 
 export type LookAnswer = VoxelAnswer | SliceAnswer | LeftOutAnswer | ViewAnswer;
 
+// A raster beneath the scene, or why it is not there.
+export interface BackdropPicture {
+  type: "backdrop";
+  file: string;                  // its name
+  system: string;                // of its coordinates
+  heights: boolean;              // drawn as hills in the light
+  width: number;                 // pixels of the picture
+  height: number;
+  pixel: number;                 // m
+  pixel_of_file: number;
+  cells: number;                 // along each side
+  corners: number[];             // x, y, ... of their corners, m, rows from the top
+  picture: string;               // blob, as backdrop.ts reads it
+}
+
+export type BackdropMessage = BackdropPicture | { type: "backdrop"; why: string };
+
 export interface PlanningProgress {
   type: "progress";
   revision: number;
@@ -391,6 +408,7 @@ export type ServerMessage =
   | { type: "runs"; id: string; folders: string[] }
   | { type: "pace"; paused: boolean }
   | LookAnswer
+  | BackdropMessage
   | FirstFlight
   | ({ type: "world" } & World)
   | { type: "refused"; id?: string; edit?: number; why: string }
