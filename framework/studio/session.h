@@ -218,6 +218,7 @@ class StudioSession {
   void add_errand(PageSocket& page, const PageMessage& message);
   Frame errand_frame(const PageMessage& message);
   void add_look(const PageMessage& message, Frame& frame) const;
+  void add_map(const PageMessage& message, Frame& frame) const;
   void ask_for_backdrop();
   bool tell_backdrop(const Errand& errand, Frame& frame);
   void next_errand(WorkerRole role);

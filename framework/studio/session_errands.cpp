@@ -23,7 +23,9 @@ bool is_look(PageMessageType type) {
 
 void StudioSession::add_errand(PageSocket& page, const PageMessage& message) {
   const bool look = is_look(message.type);
-  ErrandLine& line = errand_lines_[look ? WorkerRole::solver : WorkerRole::errands];
+  // The process that plans has the maps of its plans; runs' folders are read elsewhere.
+  const WorkerRole role = look && message.folder.empty() ? WorkerRole::solver : WorkerRole::errands;
+  ErrandLine& line = errand_lines_[role];
   // Of pictures, flights and looks a page wants the newest alone.
   const bool newest_alone = look || message.type == Type::picture || message.type == Type::fly;
   for (std::size_t i = line.under_way ? 1 : 0; newest_alone && i < line.queue.size(); ++i) {
@@ -37,15 +39,34 @@ void StudioSession::add_errand(PageSocket& page, const PageMessage& message) {
   errand.from = &page;
   errand.message = message;
   line.queue.push_back(std::move(errand));
-  next_errand(look ? WorkerRole::solver : WorkerRole::errands);
+  next_errand(role);
+}
+
+// Whose map is asked about: that of the plan on display, of an exploration that is being planned,
+// as far as it has come, or of a run's folder.
+void StudioSession::add_map(const PageMessage& message, Frame& frame) const {
+  const bool explored = mission_kind_ == "explore";
+  const bool of_map = message.type == Type::voxel || message.type == Type::slice;
+  if (mission_kind_ != "scan" && !(explored && of_map))
+    throw InputError("a mission of kind '" + mission_kind_ + "' has no map of a first flight");
+  if (explored != message.images.has_value())
+    throw InputError(explored ? "image: missing; the map of an exploration is one after each image"
+                              : "image: a scan has one map, that of its first flight");
+  if (message.images) frame.header.set("image", std::int64_t{*message.images});
+  if (!message.folder.empty()) {
+    frame.header.set("run", message.folder);
+    return;
+  }
+  const bool live = explored && solve_ && solve_->settled && !solve_->images.empty();
+  if (!live && !displayed_)
+    throw InputError(std::string("the ") + (explored ? "exploration" : "scan") +
+                     " is not planned yet");
+  frame.header.set("folder", live ? "" : displayed_->folder);
 }
 
 // A question about the plan on display.
 void StudioSession::add_look(const PageMessage& message, Frame& frame) const {
-  if (mission_kind_ != "scan")
-    throw InputError("a mission of kind '" + mission_kind_ + "' has no map of a first flight");
-  if (!displayed_) throw InputError("the scan is not planned yet");
-  frame.header.set("folder", displayed_->folder);
+  add_map(message, frame);
   switch (message.type) {
     case Type::voxel:
       frame.header.set("at", Value(Value::List(message.at.begin(), message.at.end())));

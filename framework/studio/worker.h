@@ -21,6 +21,9 @@
 //   race, stick              done {files} [state]        a race that is flown by hand
 //   voxel, slice, left_out, view {folder}   done {blobs} [members of the answer, blobs], or failed;
 //                            also while a plan is solved (worker_looks.h)
+//   voxel, slice {folder, image}   likewise, of an exploration; without a folder of the one that is
+//                            being planned
+//   voxel, slice {run, image}      likewise, of a run's folder, among errands
 #pragma once
 
 #include <filesystem>

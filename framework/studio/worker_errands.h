@@ -33,6 +33,8 @@ std::unique_ptr<Mission> configured_mission(const std::filesystem::path& script,
 // none of its own, so that they can be edited: film.from_file takes them in place of the file's.
 Value options_with_file(Mission& mission);
 
+class EpisodeReplay;
+
 class WorkerErrands {
  public:
   // `program`: its name and version, as run folders state it.
@@ -57,6 +59,7 @@ class WorkerErrands {
   Frame list_runs() const;
   Frame open_run(const Frame& asked) const;
   Frame backdrop(const Frame& asked);
+  Frame look_into_run(const Frame& asked);
   // With the shapes of its obstacles open.
   Plan with_shapes(const Frame& asked);
   void state_environment(const Plan& plan, const Value& layer,
@@ -74,6 +77,8 @@ class WorkerErrands {
   FlownPath drawn_;
   WorkerGames games_;
   Backdrop backdrop_;
+  std::shared_ptr<EpisodeReplay> looked_into_;  // of the folder:
+  std::string looked_into_looks_;               // its name, and what its files looked like
   std::set<std::filesystem::path> stated_reads_;
   std::string stated_looks_;  // of those files, when they were read
 };

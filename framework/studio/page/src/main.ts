@@ -116,12 +116,13 @@ gizmo.controls.addEventListener("dragging-changed", () => {
 new Paths(studio, stage);
 new Gates(studio, stage);
 const scanned = new ScanView(studio, stage);
+const explored = new ExplorationView(studio, stage);
 const looks = new LooksView(studio, stage);
 looks.onCut = (plane) => {
   scanned.cutBy(plane);
   solids.cutBy(plane);
+  explored.cutBy(plane);
 };
-const explored = new ExplorationView(studio, stage);
 const sights = new SightView(studio, stage);
 new PaintingView(studio, stage);
 new Pins(studio, stage, byId("pins"));

@@ -322,11 +322,15 @@ export interface VoxelAnswer {
   state: "unknown" | "free" | "occupied" | "between";
   log_odds: number;
   observations: number | null;   // null: the map does not count them
-  weight: number;
-  share: number;                 // what all images tell of it
-  images: { tour?: number; number: number; distance: number; pixels: number; mm_per_pixel: number;
+  image?: number;                // of an exploration: so many are in the map
+  known_from?: number | null;    // likewise: since which it is known; 0: since the start
+  weight?: number;               // of a scan
+  share?: number;                // what all images tell of it
+  images?: { tour?: number; number: number; distance: number; pixels: number; mm_per_pixel: number;
             incidence_deg?: number; told: number }[];
 }
+
+export type ImageOfVoxel = NonNullable<VoxelAnswer["images"]>[number];
 
 export interface SliceAnswer {
   type: "slice";
@@ -334,6 +338,8 @@ export interface SliceAnswer {
   axis: "x" | "y" | "z";
   at: number;                    // m, middle of the layer
   edge: number;                  // of a voxel
+  extent: [number, number];      // m, middles of the first and the last layer of the map
+  image?: number;                // of an exploration: so many are in the map
   level: number;                 // a cell has 2^level voxels either way
   lower: [number, number];
   columns: number;
