@@ -69,6 +69,7 @@ ExitStatus open_studio(const StudioRequest& asked, const Invocation& invocation)
   settings.laid = laid_by_words(asked, invocation, registry);
   settings.script = asked.script;
   settings.assets = asked.assets;
+  settings.backdrop = asked.backdrop;
   settings.port = asked.port;
   settings.worker.words = {"lapwing", "studio-worker", asked.script.string()};
   settings.run_words = {"lapwing", "run",  asked.script.string(), "--json", "--quiet",
@@ -121,6 +122,11 @@ void add_studio_commands(CLI::App& app, Invocation& invocation, StudioRequest& a
   studio->add_flag("--no-open", asked.no_open, "print the address and open no browser");
   add_text(*studio, "--assets", "DIR", "folder of the page's files; default: the page built in",
            [&](const std::string& path) { asked.assets = path; });
+  add_text(
+      *studio, "--backdrop", "FILE.tif",
+      "GeoTIFF to be drawn beneath the scene, at its place on the earth: an orthophoto, a hill "
+      "shading or heights; default: none",
+      [&](const std::string& path) { asked.backdrop = path; });
   add_repeated(*studio, "--config", "FILE", invocation.configs,
                "a configuration file or its name in configs/, laid on the film as its first edit; "
                "repeatable, later ones win; default: none");

@@ -11,7 +11,7 @@
 namespace lapwing {
 
 struct StudioRequest {
-  std::filesystem::path script, assets;
+  std::filesystem::path script, assets, backdrop;
   std::uint16_t port = 0;
   bool no_open = false;
 };

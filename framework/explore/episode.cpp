@@ -15,6 +15,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/number_text.h"
+#include "framework/explore/episode_map.h"
 #include "framework/explore/lookahead.h"
 
 namespace lapwing {
@@ -58,24 +59,6 @@ void require_sense(const EpisodeSettings& s, const Map& map) {
     throw InputError("an exploration needs a map that counts observations");
   if (std::abs(map.settings().maximum_range - s.sensor.range) > 1e-9)
     throw InputError("the map's maximum_range must be the camera's range");
-}
-
-// All voxels of the box become free, and are as uncertain as before.
-VoxelBox clear_box(Map& map, const Eigen::AlignedBox3d& box) {
-  const Eigen::Vector3d inside = Eigen::Vector3d::Constant(map.grid().resolution() / 2);
-  const VoxelKey low = map.grid().key(box.min() + inside),
-                 high = map.grid().key(box.max() - inside);
-  std::vector<VoxelLeaf> leaves;
-  for (int z = low.z; z <= high.z; ++z)
-    for (int y = low.y; y <= high.y; ++y)
-      for (int x = low.x; x <= high.x; ++x)
-        leaves.push_back({{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
-                           static_cast<std::uint16_t>(z)},
-                          0,
-                          0,
-                          map.settings().clamp_min});
-  map.import(leaves);
-  return {low, high};
 }
 
 // The viewpoints that could be gone to, by rank; values of older maps are upper bounds.
@@ -354,9 +337,7 @@ void Explorer::look(EpisodeStep& taken, int place) {
   hidden_.saw(image);
   means_.touch(
       reach_box(map_.grid(), taken.view, settings_.sensor.pinhole, settings_.sensor.range));
-  // Where the body is there is nothing else, whatever a noisy image says.
-  if (!graph_.free(taken.view, taken.view))
-    means_.touch(clear_box(map_, cleared_box(map_.grid(), taken.view.position, settings_.body)));
+  if (const auto cleared = clear_body(map_, taken.view, settings_.body)) means_.touch(*cleared);
   graph_.look_again();
   const double mapped = wall_seconds();
   observed_.update(map_, taken.view);

@@ -37,6 +37,8 @@ class GroundTruth {
               double resolution, const std::optional<Eigen::Vector3d>& inside = std::nullopt);
 
   const MeshScene& scene() const { return *scene_; }
+  // For those who need it longer.
+  const std::shared_ptr<const MeshScene>& shared_scene() const { return scene_; }
   const VoxelGrid& grid() const { return grid_; }
   const Eigen::AlignedBox3d& region() const { return region_; }
   std::size_t size() const { return surface_.size(); }

@@ -7,6 +7,7 @@
 
 #include "framework/core/number_text.h"
 #include "framework/core/units.h"
+#include "framework/explore/episode_replay.h"
 #include "framework/map/map_file.h"
 #include "framework/mission/exploration.h"
 #include "framework/mission/guard.h"
@@ -309,11 +310,20 @@ int explore_surface(lua_State* state) try {
   if (given.tables("start").size() > 1)
     throw InputError(given.origin("start"), "start: at most one");
   const auto utility = registry.create<ViewUtility>(chosen.type, chosen.parameters, "utility");
-  const auto new_map = [&] { return registry.create<Map>(map.type, map.parameters, "map"); };
+  const auto new_map = [&registry, map] {
+    return registry.create<Map>(map.type, map.parameters, "map");
+  };
   e->map = new_map();
   const Sandbox::ClockPause pause(Sandbox::of(state));
   const GroundTruth truth = truth_for(surface, given, e->map->grid().resolution());
   e->start = start_in(truth, given, e->settings, run.settings.seed);
+  std::shared_ptr<EpisodeReplay> replay;
+  if (run.settings.observe_episode) {
+    replay = std::make_shared<EpisodeReplay>(
+        EpisodeWorld{e->settings, e->start, truth.shared_scene(), new_map});
+    run.settings.observe_episode(replay);
+    if (run.settings.episode_alone) throw Cancelled();
+  }
   begin_planning(run);
   ObservedSurface observed(truth, e->settings.sensor, new_map);
   e->record.utility = chosen.type;
@@ -325,6 +335,7 @@ int explore_surface(lua_State* state) try {
       e->settings, e->start, truth, observed, *utility, *e->map,
       [&](const EpisodeMoment& moment) {
         moments.look(moment.step + 1, *e->map);
+        if (replay) replay->took(moment.taken.view);
         if (growth) tell_image(*e, moment, growth->look(moment.step + 1, *e->map), truth, run);
       },
       [&](const EpisodeChoice& choice) {

@@ -33,6 +33,7 @@ struct ScriptTerm;  // script_terms.h
 
 struct ExplorationRecord;  // export/exploration_report.h
 struct TakenImage;         // likewise
+class EpisodeReplay;       // explore/episode_replay.h
 struct ScanRecord;         // export/scan_report.h
 struct KeptTour;           // scan_look.h
 struct ScanWork;           // scan_objects.h
@@ -65,6 +66,10 @@ struct MissionSettings {
   bool record_steps = false;
   // Of explorations, with `record_steps`: hears of each image, and may wait. May be null.
   std::function<void(const TakenImage&)> observe_image = nullptr;
+  // Hears of what repeats the maps of an episode before it begins; it learns of each image before
+  // `observe_image` does. With `episode_alone` the plan then ends with Cancelled. May be null.
+  std::function<void(std::shared_ptr<EpisodeReplay>)> observe_episode = nullptr;
+  bool episode_alone = false;
   bool keep_tours = false;  // of scans: what each tour was chosen from, for a viewer
   std::function<void(const std::string&)> print = [](const std::string&) {};
   // Hears of the script and of every module that it requires before they are read; may be null.

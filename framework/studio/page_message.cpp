@@ -207,12 +207,27 @@ Pace pace_named(const std::string& name) {
 }
 
 // One name: what lies elsewhere is not a page's to read.
-void read_run(MessageFields& fields, PageMessage& message) {
-  read_id(fields, message);
+void read_folder(MessageFields& fields, PageMessage& message) {
   message.folder = fields.text("folder", kLongestFolder);
   if (message.folder.find('/') != std::string::npos || message.folder.starts_with("."))
     throw InputError("folder: expected the name of a folder in out/, as explore_city, not '" +
                      message.folder + "'");
+}
+
+void read_run(MessageFields& fields, PageMessage& message) {
+  read_id(fields, message);
+  read_folder(fields, message);
+}
+
+// Of explorations: the map after so many images.
+void read_images(MessageFields& fields, PageMessage& message) {
+  constexpr std::int64_t kMostImages = 1000000;
+  if (!fields.has("image")) {
+    if (fields.has("folder")) throw InputError("image: missing beside folder");
+    return;
+  }
+  message.images = static_cast<int>(fields.count("image", 0, kMostImages));
+  if (fields.has("folder")) read_folder(fields, message);
 }
 
 constexpr double kFarthest = 1e7;  // m
@@ -239,6 +254,7 @@ void read_voxel(MessageFields& fields, PageMessage& message) {
     read_numbers(fields, "ray", 6, message);
   else
     read_numbers(fields, "position", 3, message);
+  read_images(fields, message);
 }
 
 void read_slice(MessageFields& fields, PageMessage& message) {
@@ -247,6 +263,7 @@ void read_slice(MessageFields& fields, PageMessage& message) {
   if (axis != "x" && axis != "y" && axis != "z") throw InputError("axis: expected x, y or z");
   message.axis = axis.front() - 'x';
   message.at = {fields.number("at", -kFarthest, kFarthest)};
+  read_images(fields, message);
 }
 
 void read_view(MessageFields& fields, PageMessage& message) {
@@ -312,6 +329,8 @@ void read_fields(MessageFields& fields, PageMessage& message) {
       return read_id(fields, message);
     case Type::view:
       return read_view(fields, message);
+    case Type::backdrop:
+      return;
   }
 }
 
@@ -361,6 +380,8 @@ const char* to_string(PageMessageType type) {
       return "left_out";
     case Type::view:
       return "view";
+    case Type::backdrop:
+      return "backdrop";
   }
   return "";
 }

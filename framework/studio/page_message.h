@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -33,6 +34,7 @@ enum class PageMessageType {
   slice,
   left_out,
   view,
+  backdrop,  // no page says it: the server's own errand
 };
 // Of the planning of an exploration.
 enum class Pace { run, pause, step };
@@ -68,7 +70,9 @@ struct PageMessage {
   int axis = 2;                 // of slice: 0 is x
   bool of_tour = false;         // view: `view` is an image of `tour`, else a candidate
   std::size_t view = 0;         // from 0
-  std::size_t bytes = 0;        // of its text
+  // voxel, slice, of explorations: so many images are in the map; `folder` names a run, or none.
+  std::optional<int> images = {};
+  std::size_t bytes = 0;  // of its text
 };
 
 // Of a picture, each way.

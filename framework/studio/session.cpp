@@ -145,6 +145,8 @@ void StudioSession::welcome(Page& page) {
       page.socket->send(std::make_shared<const std::string>(image_text(image)));
     if (solve_->paused) page.socket->send(std::make_shared<const std::string>(pace_text()));
   }
+  if (!backdrop_message_.empty())
+    page.socket->send(std::make_shared<const std::string>(backdrop_message_));
   std::vector<std::string> remarks = remarks_;
   if (journal_ && !journal_->remark().empty()) remarks.push_back(journal_->remark());
   for (const std::string& what : remarks) {

@@ -30,6 +30,7 @@ namespace lapwing {
 struct SessionSettings {
   std::filesystem::path script;
   std::string token;                      // of the address
+  std::filesystem::path backdrop;         // a raster beneath the scene; empty: none
   std::vector<std::string> run_words;     // `lapwing run SCRIPT --json ...`, for reports
   Value laid = Value::map();              // of --config and --set: the first edit, if it is one
   std::chrono::milliseconds glance{250};  // between looks at the script
@@ -217,6 +218,9 @@ class StudioSession {
   void add_errand(PageSocket& page, const PageMessage& message);
   Frame errand_frame(const PageMessage& message);
   void add_look(const PageMessage& message, Frame& frame) const;
+  void add_map(const PageMessage& message, Frame& frame) const;
+  void ask_for_backdrop();
+  bool tell_backdrop(const Errand& errand, Frame& frame);
   void next_errand(WorkerRole role);
   void errand_done(WorkerRole role, Frame frame);
   void errands_started(WorkerRole role);
@@ -250,6 +254,8 @@ class StudioSession {
   // The solving process answers what is asked about its plans.
   std::map<WorkerRole, ErrandLine> errand_lines_{{WorkerRole::errands, {}},
                                                  {WorkerRole::solver, {}}};
+  std::string backdrop_looks_;    // of its file, when it was asked for last
+  std::string backdrop_message_;  // the last one told
   std::int64_t serial_ = 0;
   std::deque<Remembered> remembered_;             // of the script as it is; the newest first
   std::set<std::filesystem::path> script_files_;  // that the script requires

@@ -23,6 +23,8 @@ void StudioSession::glance() {
     watched_ = std::move(look);
     check_script();
   }
+  if (!settings_.backdrop.empty() && look_of(settings_.backdrop) != backdrop_looks_)
+    ask_for_backdrop();
   loop_.after(settings_.glance, [this, alive = alive_] {
     if (*alive) glance();
   });

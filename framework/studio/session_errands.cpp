@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "framework/core/json.h"
+#include "framework/studio/file_look.h"
 #include "framework/studio/layer_file.h"
 #include "framework/studio/session.h"
 
@@ -22,7 +23,9 @@ bool is_look(PageMessageType type) {
 
 void StudioSession::add_errand(PageSocket& page, const PageMessage& message) {
   const bool look = is_look(message.type);
-  ErrandLine& line = errand_lines_[look ? WorkerRole::solver : WorkerRole::errands];
+  // The process that plans has the maps of its plans; runs' folders are read elsewhere.
+  const WorkerRole role = look && message.folder.empty() ? WorkerRole::solver : WorkerRole::errands;
+  ErrandLine& line = errand_lines_[role];
   // Of pictures, flights and looks a page wants the newest alone.
   const bool newest_alone = look || message.type == Type::picture || message.type == Type::fly;
   for (std::size_t i = line.under_way ? 1 : 0; newest_alone && i < line.queue.size(); ++i) {
@@ -36,15 +39,34 @@ void StudioSession::add_errand(PageSocket& page, const PageMessage& message) {
   errand.from = &page;
   errand.message = message;
   line.queue.push_back(std::move(errand));
-  next_errand(look ? WorkerRole::solver : WorkerRole::errands);
+  next_errand(role);
+}
+
+// Whose map is asked about: that of the plan on display, of an exploration that is being planned,
+// as far as it has come, or of a run's folder.
+void StudioSession::add_map(const PageMessage& message, Frame& frame) const {
+  const bool explored = mission_kind_ == "explore";
+  const bool of_map = message.type == Type::voxel || message.type == Type::slice;
+  if (mission_kind_ != "scan" && !(explored && of_map))
+    throw InputError("a mission of kind '" + mission_kind_ + "' has no map of a first flight");
+  if (explored != message.images.has_value())
+    throw InputError(explored ? "image: missing; the map of an exploration is one after each image"
+                              : "image: a scan has one map, that of its first flight");
+  if (message.images) frame.header.set("image", std::int64_t{*message.images});
+  if (!message.folder.empty()) {
+    frame.header.set("run", message.folder);
+    return;
+  }
+  const bool live = explored && solve_ && solve_->settled && !solve_->images.empty();
+  if (!live && !displayed_)
+    throw InputError(std::string("the ") + (explored ? "exploration" : "scan") +
+                     " is not planned yet");
+  frame.header.set("folder", live ? "" : displayed_->folder);
 }
 
 // A question about the plan on display.
 void StudioSession::add_look(const PageMessage& message, Frame& frame) const {
-  if (mission_kind_ != "scan")
-    throw InputError("a mission of kind '" + mission_kind_ + "' has no map of a first flight");
-  if (!displayed_) throw InputError("the scan is not planned yet");
-  frame.header.set("folder", displayed_->folder);
+  add_map(message, frame);
   switch (message.type) {
     case Type::voxel:
       frame.header.set("at", Value(Value::List(message.at.begin(), message.at.end())));
@@ -81,6 +103,10 @@ Frame StudioSession::errand_frame(const PageMessage& message) {
     frame.parts = {message.tour == 0 ? settled->document : settled->further[message.tour - 1]};
   };
   switch (message.type) {
+    case Type::backdrop:
+      use(settled_, "the document is not solved yet");
+      frame.header.set("file", std::filesystem::absolute(settings_.backdrop).string());
+      break;
     case Type::fly:
       use(certified_, "there is no certified plan to fly yet");
       frame.header.set("wind_mean", std::hypot(message.wind[0], message.wind[1]));
@@ -145,6 +171,39 @@ Frame StudioSession::errand_frame(const PageMessage& message) {
   return frame;
 }
 
+// For the document's plan as it is. The process that does it tells nothing where the backdrop is as
+// it was.
+void StudioSession::ask_for_backdrop() {
+  if (settings_.backdrop.empty() || !settled_) return;
+  backdrop_looks_ = look_of(settings_.backdrop);
+  ErrandLine& line = errand_lines_[WorkerRole::errands];
+  for (std::size_t i = line.under_way ? 1 : 0; i < line.queue.size(); ++i)
+    if (line.queue[i].type == Type::backdrop) return;  // its turn comes
+  Errand errand;
+  errand.type = errand.message.type = Type::backdrop;
+  line.queue.push_back(std::move(errand));
+  next_errand(WorkerRole::errands);
+}
+
+// Whether it was one. Without an answer nothing of the backdrop before is shown.
+bool StudioSession::tell_backdrop(const Errand& errand, Frame& frame) {
+  if (errand.type != Type::backdrop) return false;
+  const bool done = frame.header.at("said") == Value("done");
+  if (done && frame.parts.size() < 2) return true;
+  Value message = Value::map();
+  message.set("type", "backdrop");
+  if (done)
+    message.set("picture", surfaces_.put(std::move(frame.parts[1])));
+  else
+    message.set("why", frame.header.at("why"));
+  std::string text = to_json(message, -1);
+  if (done) text.insert(text.size() - 1, "," + frame.parts[0]);
+  if (text == backdrop_message_) return true;
+  backdrop_message_ = std::move(text);
+  tell_all(backdrop_message_);
+  return true;
+}
+
 void StudioSession::next_errand(WorkerRole role) {
   ErrandLine& line = errand_lines_[role];
   while (!line.under_way && !line.queue.empty()) {
@@ -170,7 +229,11 @@ void StudioSession::errands_started(WorkerRole role) {
   Errand& errand = line.queue.front();
   if (errand.crashes <= 1)
     return (role == WorkerRole::solver ? solver_ : errands_)->send(errand.frame);
-  fail(errand.from, errand.message, "the process that does it crashed twice");
+  Frame failed;
+  failed.header.set("said", "failed");
+  failed.header.set("why", "the process that does it crashed twice");
+  if (!tell_backdrop(errand, failed))
+    fail(errand.from, errand.message, failed.header.at("why").as_text());
   line.queue.pop_front();
   line.under_way = false;
   next_errand(role);
@@ -182,6 +245,7 @@ void StudioSession::errand_done(WorkerRole role, Frame frame) {
   const Errand errand = std::move(line.queue.front());
   line.queue.pop_front();
   line.under_way = false;
+  if (tell_backdrop(errand, frame)) return next_errand(role);
   if (frame.header.at("said") != Value("done")) {
     fail(errand.from, errand.message, frame.header.at("why").as_text());
     return next_errand(role);

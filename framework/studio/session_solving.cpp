@@ -265,6 +265,7 @@ void StudioSession::settle(const Frame& frame) {
     if (frame.header.at("grade") == Value("certified")) certified_ = settled;
   }
   displayed_ = std::move(settled);
+  if (solve_->revision) ask_for_backdrop();
 }
 
 void StudioSession::world(const Frame& frame) {

@@ -9,6 +9,7 @@
 
 #include "framework/core/error.h"
 #include "framework/studio/address_memory.h"
+#include "framework/studio/backdrop.h"
 #include "framework/studio/embedded_page.h"
 #include "framework/studio/layer_file.h"
 #include "framework/studio/page_assets.h"
@@ -84,6 +85,7 @@ void run_studio(const StudioSettings& settings, const CancellationToken& token,
   std::error_code code;
   if (!fs::is_regular_file(settings.script, code))
     throw InputError("there is no script '" + settings.script.string() + "'");
+  if (!settings.backdrop.empty()) backdrop_look(settings.backdrop);  // what is wrong is said here
   const PageAssets assets =
       settings.assets.empty() ? PageAssets::built_in() : PageAssets::of_folder(settings.assets);
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error to be told
@@ -94,6 +96,7 @@ void run_studio(const StudioSettings& settings, const CancellationToken& token,
   EventLoop loop;
   SessionSettings own;
   own.script = settings.script;
+  own.backdrop = settings.backdrop;
   own.run_words = settings.run_words;
   own.laid = settings.laid;
   StudioSession session(loop, own, std::move(journal), why_not);

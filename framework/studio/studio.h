@@ -15,6 +15,7 @@ namespace lapwing {
 struct StudioSettings {
   std::filesystem::path script;
   std::filesystem::path assets;        // folder of the page; empty: what was built in
+  std::filesystem::path backdrop;      // a raster beneath the scene; empty: none
   std::uint16_t port = 0;              // 0: one is chosen
   WorkerProgram worker;                // the words of a working process
   std::vector<std::string> run_words;  // of `lapwing run` for reports

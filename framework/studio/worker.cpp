@@ -94,7 +94,8 @@ class StudioWorker {
 
   void take(Frame frame) {
     const std::string what = frame.header.at("do").as_text();
-    if (WorkerLooks::answers(what)) return looks_.ask(std::move(frame));
+    if (WorkerLooks::answers(what) && !frame.header.find("run"))
+      return looks_.ask(std::move(frame));
     const std::lock_guard lock(mutex_);
     if (what == "pace") {
       paused_ = frame.header.at("paused").as_boolean();
@@ -297,6 +298,10 @@ class StudioWorker {
       tell_image(image);
       wait_while_paused();
     };
+    if (kind_ == "explore")
+      settings.observe_episode = [this](std::shared_ptr<EpisodeReplay> episode) {
+        looks_.begin_episode(std::move(episode));
+      };
     settings.keep_tours = true;
     settings.observe_first_flight = [this](const Value& told) { tell_first_flight(told); };
     settings.scan_memory = scan_memory();
@@ -323,6 +328,7 @@ class StudioWorker {
     edited.folder = result.obstacle_folder;
     edited.scan = result.scan;
     edited.exploration = result.exploration;
+    if (edited.exploration) looks_.keep_episode(edited.folder.string());
     if (edited.exploration)  // for distances: planning kept the map in its own form
       open_recorded_shapes(result.plan.environment, *settings_.registry, edited.folder);
     edited.plan = std::make_shared<const Plan>(result.plan);

@@ -17,9 +17,13 @@
 //   describe                 described {schema, choices}
 //   fly {conditions}         done {...} [samples]        of the plan document in the first part
 //   picture, export, export_lua, save_report             done {...}, or failed {why}
+//   backdrop {file}          done [members of the message, picture]; without parts: as before
 //   race, stick              done {files} [state]        a race that is flown by hand
 //   voxel, slice, left_out, view {folder}   done {blobs} [members of the answer, blobs], or failed;
 //                            also while a plan is solved (worker_looks.h)
+//   voxel, slice {folder, image}   likewise, of an exploration; without a folder of the one that is
+//                            being planned
+//   voxel, slice {run, image}      likewise, of a run's folder, among errands
 #pragma once
 
 #include <filesystem>

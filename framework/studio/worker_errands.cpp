@@ -24,6 +24,7 @@
 #include "framework/export/run_folder.h"
 #include "framework/mission/controller_source.h"
 #include "framework/mission/environment_source.h"
+#include "framework/studio/episode_answers.h"
 #include "framework/studio/file_look.h"
 #include "framework/studio/plan_message.h"
 #include "framework/trajectory/fleet.h"
@@ -175,6 +176,8 @@ Frame WorkerErrands::answer(const Frame& asked) {
   if (what == "save_report") return save_report(asked);
   if (what == "list_runs") return list_runs();
   if (what == "open_run") return open_run(asked);
+  if (what == "backdrop") return backdrop(asked);
+  if (asked.header.find("run")) return look_into_run(asked);
   if (what == "race") return games_.begin(asked, plan_in(asked));
   if (what == "stick") return games_.stick(asked);
   throw Error("a working process does not know '" + what + "'");
@@ -448,6 +451,28 @@ Frame WorkerErrands::open_run(const Frame& asked) const {
                      ? "null"
                      : certificate_message(Certificate::from_value(shown.plan.certificate)),
                  std::move(shown.growth), std::move(shown.sights)};
+  return frame;
+}
+
+// As long as the run is the same its images are taken again once.
+Frame WorkerErrands::look_into_run(const Frame& asked) {
+  const fs::path folder = kRuns / fs::path(asked.header.at("run").as_text());
+  std::string looks = folder.string() + "\n" + look_of(folder / "episode.json") + "\n" +
+                      look_of(folder / "plan.json") + "\n" + look_of(script_);
+  if (!looked_into_ || looks != looked_into_looks_) {
+    looked_into_.reset();
+    if (const std::string why = complete_run_folder(folder); !why.empty()) throw InputError(why);
+    looked_into_ = replay_of_run(folder, script_, settings_, program_);
+    looked_into_looks_ = std::move(looks);
+  }
+  return episode_answer(asked, *looked_into_);
+}
+
+// Without parts where what was shown last still holds.
+Frame WorkerErrands::backdrop(const Frame& asked) {
+  Frame frame = done();
+  if (const auto shown = backdrop_.shown_for(asked.header.at("file").as_text(), plan_in(asked)))
+    frame.parts = {shown->members, shown->picture};
   return frame;
 }
 

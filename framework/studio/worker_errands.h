@@ -8,6 +8,7 @@
 #include <string>
 
 #include "framework/mission/mission.h"
+#include "framework/studio/backdrop.h"
 #include "framework/studio/frames.h"
 #include "framework/studio/worker_games.h"
 #include "framework/vehicle/closed_loop.h"
@@ -32,6 +33,8 @@ std::unique_ptr<Mission> configured_mission(const std::filesystem::path& script,
 // none of its own, so that they can be edited: film.from_file takes them in place of the file's.
 Value options_with_file(Mission& mission);
 
+class EpisodeReplay;
+
 class WorkerErrands {
  public:
   // `program`: its name and version, as run folders state it.
@@ -55,6 +58,8 @@ class WorkerErrands {
   Frame save_report(const Frame& asked) const;
   Frame list_runs() const;
   Frame open_run(const Frame& asked) const;
+  Frame backdrop(const Frame& asked);
+  Frame look_into_run(const Frame& asked);
   // With the shapes of its obstacles open.
   Plan with_shapes(const Frame& asked);
   void state_environment(const Plan& plan, const Value& layer,
@@ -71,6 +76,9 @@ class WorkerErrands {
   std::string drawn_trajectory_;         // whose simulated flight is kept, of light paintings
   FlownPath drawn_;
   WorkerGames games_;
+  Backdrop backdrop_;
+  std::shared_ptr<EpisodeReplay> looked_into_;  // of the folder:
+  std::string looked_into_looks_;               // its name, and what its files looked like
   std::set<std::filesystem::path> stated_reads_;
   std::string stated_looks_;  // of those files, when they were read
 };

@@ -3,109 +3,26 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cmath>
 
-#include "framework/core/json.h"
-#include "framework/core/number_text.h"
 #include "framework/core/png.h"
 #include "framework/core/units.h"
 #include "framework/geometry/camera_axes.h"
-#include "framework/map/map_look.h"
 #include "framework/picture/mesh_picture.h"
+#include "framework/studio/episode_answers.h"
+#include "framework/studio/map_answers.h"
 
 namespace lapwing {
 namespace {
 
-static_assert(std::endian::native == std::endian::little);
-
-constexpr std::size_t kMostKept = 4;
-constexpr std::size_t kSmall = std::size_t{64} << 20;     // bytes of a graph
-constexpr std::size_t kMostCells = std::size_t{1} << 20;  // of a slice
-constexpr int kPictureAcross = 320, kPictureDown = 240;   // pixels at most
-
-Value list_of(const Eigen::Vector3d& v) {
-  return Value(Value::List{v.x(), v.y(), v.z()});
-}
-
-Eigen::Vector3d vector_in(const Value& list, std::size_t first = 0) {
-  const auto& numbers = list.as_list();
-  return {numbers.at(first).as_number(), numbers.at(first + 1).as_number(),
-          numbers.at(first + 2).as_number()};
-}
-
-// Bytes of a blob: a text of four letters, then 32-bit little-endian numbers.
-class BlobBytes {
- public:
-  explicit BlobBytes(const char* name) : bytes_(name) {}
-  template <class Number>
-  BlobBytes& add(Number number) {
-    static_assert(sizeof number == 4);
-    bytes_.append(reinterpret_cast<const char*>(&number), sizeof number);
-    return *this;
-  }
-  BlobBytes& add(const Eigen::Vector3d& v) {
-    for (int i = 0; i < 3; ++i) add(static_cast<float>(v[i]));
-    return *this;
-  }
-  std::string take() { return std::move(bytes_); }
-
- private:
-  std::string bytes_;
-};
-
-// `parts`: the members of the answer as an object, then the blobs that `blobs` names.
-Frame told(const Value& members) {
-  Frame frame;
-  frame.header.set("said", "done");
-  frame.header.set("blobs", Value::list());
-  frame.parts.push_back(to_json(members, -1));
-  return frame;
-}
-
-void add_blob(Frame& frame, const char* name, std::string bytes) {
-  frame.header.find("blobs")->push_back(name);
-  frame.parts.push_back(std::move(bytes));
-}
-
-const char* name_of(const VoxelReading& reading) {
-  if (!reading.known) return "unknown";
-  return reading.state == VoxelState::free       ? "free"
-         : reading.state == VoxelState::occupied ? "occupied"
-                                                 : "between";
-}
-
-VoxelKey asked_voxel(const Frame& question, const Map& map) {
-  const Value& at = question.header.at("at");
-  if (at.as_list().size() == 3) {
-    const Eigen::Vector3d p = vector_in(at);
-    if (!map.grid().contains(p))
-      throw InputError("the place lies beyond the largest map, which reaches " +
-                       plain_number(map.grid().reach()) + " m from the origin");
-    return map.grid().key(p);
-  }
-  const Eigen::Vector3d direction = vector_in(at, 3);
-  if (!(direction.norm() > 0)) throw InputError("ray: its direction has no length");
-  const auto hit = first_occupied(map, vector_in(at), direction.normalized());
-  if (!hit)
-    throw InputError(
-        "no occupied voxel lies there; free and unknown ones are found on a slice of the map");
-  return *hit;
-}
+constexpr std::size_t kMostLookedAt = 4;
+constexpr std::size_t kSmall = std::size_t{64} << 20;    // bytes of a graph
+constexpr int kPictureAcross = 320, kPictureDown = 240;  // pixels at most
 
 Frame voxel_answer(const Frame& question, const std::vector<KeptTour>& tours, int threads) {
   const Map& map = *tours.front().work->prior->mapping.map;
   const VoxelKey key = asked_voxel(question, map);
   const VoxelLook look = look_at_voxel(tours, key, threads);
-  Value value = Value::map();
-  value.set("key",
-            Value(Value::List{std::int64_t{key.x}, std::int64_t{key.y}, std::int64_t{key.z}}));
-  value.set("middle", list_of(map.grid().center(key)));
-  value.set("edge", map.grid().resolution());
-  value.set("state", name_of(look.reading));
-  value.set("log_odds", static_cast<double>(look.reading.log_odds));
-  value.set("observations",
-            map.settings().observations ? Value(std::int64_t{look.reading.observations}) : Value());
+  Value value = voxel_members(map, key);
   value.set("weight", look.weight);
   value.set("share", static_cast<double>(look.share));
   Value& images = value.set("images", Value::list());
@@ -120,46 +37,7 @@ Frame voxel_answer(const Frame& question, const std::vector<KeptTour>& tours, in
     one.set("told", static_cast<double>(image.told));
     images.push_back(std::move(one));
   }
-  return told(value);
-}
-
-// Of each cell its log odds as a number of 0 to 255 between the clamps, then its state.
-std::string bytes_of_slice(const MapSlice& slice, const MapSettings& settings) {
-  BlobBytes head("WLS1");
-  head.add(static_cast<std::uint32_t>(slice.columns)).add(static_cast<std::uint32_t>(slice.rows));
-  std::string bytes = head.take();
-  const float low = settings.clamp_min, wide = settings.clamp_max - settings.clamp_min;
-  for (const float odds : slice.log_odds)
-    bytes += static_cast<char>(
-        static_cast<std::uint8_t>(std::lround(255 * std::clamp((odds - low) / wide, 0.0f, 1.0f))));
-  for (const CellState state : slice.states) bytes += static_cast<char>(state);
-  return bytes;
-}
-
-Frame slice_answer(const Frame& question, const std::vector<KeptTour>& tours) {
-  const Map& map = *tours.front().work->prior->mapping.map;
-  const VoxelGrid& grid = map.grid();
-  const auto axis = static_cast<int>(question.header.at("axis").as_integer());
-  const MapSlice slice = slice_of(map, axis, question.header.at("at").as_number(), kMostCells);
-  constexpr const char* kAxes[3] = {"x", "y", "z"};
-  Value value = Value::map();
-  value.set("axis", kAxes[axis]);
-  value.set("at", grid.center(slice.layer));
-  value.set("edge", grid.resolution());
-  value.set("level", std::int64_t{slice.level});
-  value.set("lower", Value(Value::List{grid.face(slice.first[0]), grid.face(slice.first[1])}));
-  value.set("columns", std::int64_t{slice.columns});
-  value.set("rows", std::int64_t{slice.rows});
-  Value& counts = value.set("counts", Value::map());
-  counts.set("free", static_cast<std::int64_t>(slice.free));
-  counts.set("occupied", static_cast<std::int64_t>(slice.occupied));
-  counts.set("between", static_cast<std::int64_t>(slice.between));
-  counts.set("unknown", static_cast<std::int64_t>(slice.unknown));
-  value.set("clamps", Value(Value::List{static_cast<double>(map.settings().clamp_min),
-                                        static_cast<double>(map.settings().clamp_max)}));
-  Frame frame = told(value);
-  add_blob(frame, "cells", bytes_of_slice(slice, map.settings()));
-  return frame;
+  return answer_with(value);
 }
 
 Frame left_out_answer(const std::vector<KeptTour>& tours, int threads) {
@@ -180,7 +58,7 @@ Frame left_out_answer(const std::vector<KeptTour>& tours, int threads) {
     reasons.push_back(std::move(one));
   }
   value.set("beyond", left.beyond);
-  Frame frame = told(value);
+  Frame frame = answer_with(value);
   add_blob(frame, "places", bytes.take());
   return frame;
 }
@@ -210,7 +88,7 @@ Frame view_answer(const Frame& question, const std::vector<KeptTour>& tours, int
   const VoxelGrid& grid = work->prior->mapping.map->grid();
   Value value = Value::map();
   value.set("candidate", std::int64_t{number});
-  value.set("position", list_of(look.view.position));
+  value.set("position", point_list(look.view.position));
   value.set("yaw", look.view.yaw);
   value.set("pitch", look.view.pitch);
   value.set("score", look.score);
@@ -220,7 +98,7 @@ Frame view_answer(const Frame& question, const std::vector<KeptTour>& tours, int
     one.set("candidate", std::int64_t{way.view});
     one.set("seconds", way.seconds);
     Value& points = one.set("points", Value::list());
-    for (const Eigen::Vector3d& p : way.points) points.push_back(list_of(p));
+    for (const Eigen::Vector3d& p : way.points) points.push_back(point_list(p));
     ways.push_back(std::move(one));
   }
   value.set("voxels", static_cast<std::int64_t>(look.told.size()));
@@ -231,7 +109,7 @@ Frame view_answer(const Frame& question, const std::vector<KeptTour>& tours, int
   const Pinhole& camera = work->visible->settings().pinhole;
   const CameraView view{camera.fitted(kPictureAcross, kPictureDown), look.view.position,
                         camera_axes(look.view.yaw, look.view.pitch)};
-  Frame frame = told(value);
+  Frame frame = answer_with(value);
   add_blob(frame, "told", bytes.take());
   add_blob(frame, "picture", encode_png(mesh_picture(*work->prior->mesh, view, threads)));
   return frame;
@@ -259,10 +137,26 @@ void WorkerLooks::keep(const std::string& folder, std::vector<KeptTour> tours) {
   const bool small = bytes_of(*tours.front().work) <= kSmall;
   const std::lock_guard lock(mutex_);
   std::erase_if(kept_, [&](const Kept& one) {
-    return one.folder == folder || !small || bytes_of(*one.tours.front().work) > kSmall;
+    return !small || (!one.tours.empty() && bytes_of(*one.tours.front().work) > kSmall);
   });
-  kept_.push_back({folder, std::move(tours)});
-  if (kept_.size() > kMostKept) kept_.pop_front();
+  add({folder, std::move(tours), nullptr});
+}
+
+// With the lock.
+void WorkerLooks::add(Kept one) {
+  std::erase_if(kept_, [&](const Kept& other) { return other.folder == one.folder; });
+  kept_.push_back(std::move(one));
+  if (kept_.size() > kMostLookedAt) kept_.pop_front();
+}
+
+void WorkerLooks::begin_episode(std::shared_ptr<EpisodeReplay> episode) {
+  const std::lock_guard lock(mutex_);
+  live_ = std::move(episode);
+}
+
+void WorkerLooks::keep_episode(const std::string& folder) {
+  const std::lock_guard lock(mutex_);
+  if (live_) add({folder, {}, live_});
 }
 
 void WorkerLooks::ask(Frame question) {
@@ -295,22 +189,26 @@ void WorkerLooks::work() {
   }
 }
 
-std::vector<KeptTour> WorkerLooks::tours_of(const std::string& folder) const {
+// Of "" what is being planned.
+WorkerLooks::Kept WorkerLooks::kept_in(const std::string& folder) const {
   const std::lock_guard lock(mutex_);
+  if (folder.empty() && live_) return {"", {}, live_};
   const auto found = std::find_if(kept_.begin(), kept_.end(),
                                   [&](const Kept& one) { return one.folder == folder; });
   if (found == kept_.end())
     throw InputError(
         "the map of this plan is no longer held: it is held of the last plans, and of a large map "
-        "of the last one alone; edit the scan to plan it again");
-  return found->tours;
+        "of the last one alone; edit the mission to plan it again");
+  return *found;
 }
 
 Frame WorkerLooks::answer(const Frame& question) const {
-  const std::vector<KeptTour> tours = tours_of(question.header.at("folder").as_text());
+  const Kept kept = kept_in(question.header.at("folder").as_text());
+  if (kept.episode) return episode_answer(question, *kept.episode);
+  const std::vector<KeptTour>& tours = kept.tours;
   const std::string& what = question.header.at("do").as_text();
   if (what == "voxel") return voxel_answer(question, tours, threads_);
-  if (what == "slice") return slice_answer(question, tours);
+  if (what == "slice") return slice_answer(question, *tours.front().work->prior->mapping.map);
   if (what == "left_out") return left_out_answer(tours, threads_);
   return view_answer(question, tours, threads_);
 }

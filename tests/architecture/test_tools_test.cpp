@@ -92,6 +92,7 @@ const std::map<std::string, std::string> kPackages{// find_package and pkg_check
                                                    {"chromium", "chromium"},
                                                    {"cmake", "cmake"},
                                                    {"fish", "fish"},
+                                                   {"gdal_create", "gdal-bin"},
                                                    {"gdallocationinfo", "gdal-bin"},
                                                    {"groff", "groff-base"},
                                                    {"make", "make"},

@@ -5,6 +5,7 @@ import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { studioState, type, waitGrade, waitRevision } from "./browser.mjs";
+import { lookIntoLive, lookIntoMap, sliceAt } from "./cases_explored.mjs";
 import { exported, served } from "./served.mjs";
 
 const PLANNED = 60000;   // ms at most
@@ -36,6 +37,7 @@ export const explore = (browser, shot) => served(browser, shot, {
   await page.click("#explore-candidates");
   await picture("explore_02_candidates");
   await sights(page, picture);
+  await lookIntoMap(page, picture);
   await whilePlanned(page, picture);
   await runFolder(page, studio, picture);
   // Another start by typing: flown anew.
@@ -100,6 +102,7 @@ async function whilePlanned(page, picture) {
   await still(page);
   assert.equal(await live(), first + 2);
   await picture("explore_03_live");
+  await lookIntoLive(page, picture);
   const taken = await page.evaluate("window.lapwing.episode.images");
   const shared = Math.min(taken.length, finished.length);
   assert.deepEqual(taken.slice(0, shared), finished.slice(0, shared));
@@ -164,8 +167,10 @@ async function runFolder(page, studio, picture) {
   await page.click("#step-back");
   assert.match(await figures(page), /19 of 20/);
   await picture("explore_04_run");
+  const ofRun = await sliceAt(page);
   await page.click("#run-close");
   await page.waitForSelector("#run-shown[hidden]");
+  assert.deepEqual(await sliceAt(page), ofRun);
   assert.equal((await studioState(page)).revision, revision);
   const text = readFileSync(told, "utf8");
   for (const [from, to, words] of [[/"program": "lapwing [^"]*"/, '"program": "lapwing 0.0.1"', /written by lapwing 0\.0\.1 .* this is lapwing/],

@@ -5,6 +5,7 @@ import { mkdirSync, readdirSync, statSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { chromium, openPage, startBrowser, waitGrade } from "./browser.mjs";
+import { backdrop } from "./cases_backdrop.mjs";
 import { edits } from "./cases_edit.mjs";
 import { explore } from "./cases_explore.mjs";
 import { film } from "./cases_film.mjs";
@@ -87,7 +88,7 @@ try {
     if (shots) await page.screenshot({ path: join(shots, `${file}.png`) });
   };
   // With servers of their own; that of the film measures times.
-  const served = Object.entries({ scan, look, race, painting, explore, report })
+  const served = Object.entries({ scan, look, backdrop, race, painting, explore, report })
     .filter(([name]) => !only || only === name);
   await Promise.all(browsers.map(async (browser) => {
     for (let next = served.shift(); next; next = served.shift()) {

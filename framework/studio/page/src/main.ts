@@ -45,6 +45,7 @@ import { Navigation } from "./view/navigate";
 import { Paths } from "./view/paths";
 import { Pick } from "./view/pick";
 import { Pins } from "./view/pins";
+import { BackdropView } from "./view/backdrop_view";
 import { Preview, previewControls } from "./view/preview";
 import { ExplorationView } from "./view/exploration_view";
 import { PaintingView } from "./view/painting_view";
@@ -115,12 +116,13 @@ gizmo.controls.addEventListener("dragging-changed", () => {
 new Paths(studio, stage);
 new Gates(studio, stage);
 const scanned = new ScanView(studio, stage);
+const explored = new ExplorationView(studio, stage);
 const looks = new LooksView(studio, stage);
 looks.onCut = (plane) => {
   scanned.cutBy(plane);
   solids.cutBy(plane);
+  explored.cutBy(plane);
 };
-const explored = new ExplorationView(studio, stage);
 const sights = new SightView(studio, stage);
 new PaintingView(studio, stage);
 new Pins(studio, stage, byId("pins"));
@@ -137,6 +139,7 @@ new Feel(studio);
 new Setup(studio);
 const notices = new Notices(studio);
 takeDropped(studio, notices);
+const backdrop = new BackdropView(studio, stage, (text, kind) => notices.say(text, kind));
 new Hints(studio);
 wireTabs();
 
@@ -343,6 +346,8 @@ Object.defineProperty(window, "lapwing", {
     get live() { return studio.live?.told.images.length ?? 0; },
     get paused() { return studio.paused; },
     get footprints() { return scanned.drawn; },
+    get backdrop() { return backdrop.drawn; },
+    backdropAt: (x: number, y: number) => backdrop.placeOf(x, y),
     get firstFlight() { return session.firstFlight; },
     get looks() {
       const { slice, voxel, view, leftOut } = looks;

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { cellColour, cellStates, imageInWords, placesIn, reasonColours, reasonNames, reasonsOf, sliceCorners,
          sliceHit, texelsIn, toldIn, viewInWords, voxelInWords } from "../src/state/looks";
-import type { LeftOutAnswer, SliceAnswer, Vec3, ViewAnswer, VoxelAnswer } from "../src/state/types";
+import type { ImageOfVoxel, LeftOutAnswer, SliceAnswer, Vec3, ViewAnswer, VoxelAnswer } from "../src/state/types";
 
 function blob(name: string, bytes: number): DataView {
   const data = new DataView(new ArrayBuffer(bytes));
@@ -33,7 +33,7 @@ test("places and voxels are read, and other bytes are refused", () => {
 });
 
 const slice: SliceAnswer = {
-  type: "slice", id: "s", axis: "x", at: 2.5, edge: 0.5, level: 1, lower: [-1, 0], columns: 3, rows: 2,
+  type: "slice", id: "s", axis: "x", at: 2.5, edge: 0.5, level: 1, extent: [0.5, 4.5], lower: [-1, 0], columns: 3, rows: 2,
   counts: { unknown: 1, free: 2, occupied: 3, between: 0 }, clamps: [-2, 3.5], cells: "",
 };
 
@@ -69,12 +69,19 @@ test("a voxel, its images, a view and reasons are told in words", () => {
   assert.equal(words.Measured, "3 times");
   assert.equal(words["Told by all images"], "75 %");
   assert.equal(words["Seen by"], "1 image");
-  assert.equal(imageInWords(voxel.images[0] as VoxelAnswer["images"][number]),
+  assert.equal(imageInWords(voxel.images?.[0] as ImageOfVoxel),
                "image 4: 35.8 mm a pixel from 12.3 m at 41.2\u00b0");
   const unknown = Object.fromEntries(voxelInWords({ ...voxel, state: "unknown", weight: 0 }));
   assert.equal(unknown["Log odds"], undefined);
   assert.equal(unknown.Region, "outside of it");
   assert.match(Object.fromEntries(voxelInWords({ ...voxel, observations: null })).Measured as string, /not counted/);
+  // Of an exploration: since which image it is known.
+  const explored = (known_from: number | null): string | undefined =>
+    Object.fromEntries(voxelInWords({ ...voxel, image: 7, known_from }))["Known from"];
+  assert.equal(explored(3), "image 3");
+  assert.equal(explored(0), "the start, taken to be free");
+  assert.equal(explored(null), "not yet");
+  assert.equal(Object.fromEntries(voxelInWords({ ...voxel, image: 7, known_from: 3 })).Region, undefined);
   const view: ViewAnswer = { type: "view", id: "w", candidate: 6, position: [1, 2, 3], yaw: Math.PI / 2, pitch: 0,
                              score: 12.345, voxels: 80, told: "", picture: "",
                              ways: [{ candidate: 1, seconds: 4.2, points: [] }] };

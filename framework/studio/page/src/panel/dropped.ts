@@ -29,6 +29,11 @@ export function takeDropped(studio: Studio, notices: Notices): void {
 
   async function take(file: File): Promise<void> {
     try {
+      // Its bytes would not do: the server reads files that its command line names, no others.
+      if (/\.tiff?$/i.test(file.name)) {
+        throw new Error(`${file.name}: a backdrop is named when the studio is started: lapwing studio ${
+          studio.session.mission.script} --backdrop ${file.name}`);
+      }
       if (!studio.editable) throw new Error("Nothing can be edited now.");
       if (file.size > MOST_BYTES) throw new Error(`${file.name}: more than ${MOST_BYTES / 1e6} MB`);
       const text = await file.text();

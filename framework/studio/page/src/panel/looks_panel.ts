@@ -4,12 +4,13 @@
 import { axisNumber, cellColour, cellStates, imageInWords, reasonColours, reasonNames, reasonsOf,
          stateNames, viewInWords, voxelInWords, type Axis } from "../state/looks";
 import { show } from "../state/units";
-import type { ScanWorld } from "../state/types";
+import type { ScanWorld, SliceAnswer } from "../state/types";
 import type { Studio } from "../studio";
 import { byId, el, refill } from "../view/dom";
 import type { LooksView } from "../view/looks_view";
 
 const MOST_IMAGES = 12;     // of those that see a voxel, in words
+const FIRST_EXTENT = 20;    // m, either way, before the first slice has come
 const SURE = 230;           // of 255, of the colours in the legend
 
 export class LooksPanel {
@@ -38,8 +39,11 @@ export class LooksPanel {
       studio.session.note(`Candidates have numbers from 1 to ${count}.`);
     });
     byId("look-view").addEventListener("click", () => looks.askViewNow());
-    looks.onChange = () => this.show();
-    studio.on(["world"], () => this.showExtent(false));
+    looks.onChange = () => {
+      if (looks.slice && looks.explored) this.follow(looks.slice);
+      this.show();
+    };
+    studio.on(["world", "episode", "document"], () => this.showExtent(false));
     this.showExtent(false);
   }
 
@@ -55,8 +59,10 @@ export class LooksPanel {
 
   // The slider goes over the map, from middle to middle of its layers.
   private showExtent(anew: boolean): void {
-    const map = this.scan?.map;
+    const map = this.scan?.map, { explored } = this.looks;
     byId("looks").hidden = !map?.lower;
+    byId("map-look").hidden = !map?.lower && !explored;
+    if (explored) return this.showExplored(anew);
     if (!map?.lower || !map.upper) return;
     const axis = axisNumber(this.axis.value as Axis);
     const low = map.lower[axis] + map.resolution / 2, high = map.upper[axis] - map.resolution / 2;
@@ -73,6 +79,39 @@ export class LooksPanel {
     this.show();
   }
 
+  // Of an exploration the map grows: the slider goes as far as the slice's map does, and begins at
+  // the height of the view.
+  private showExplored(anew: boolean): void {
+    const { studio, looks } = this;
+    const section = byId("exploration");
+    if (byId("map-look").parentElement !== section) section.append(byId("map-look"));
+    byId("map-look-title").textContent = "The map after this image";
+    byId("voxel-hint").textContent =
+      "Click on the map or the slice for a voxel (Enter: the middle of the view).";
+    if (anew || this.at.dataset.of !== this.axis.value) {
+      const images = studio.episode?.images ?? [];
+      const view = images[Math.max(0, (looks.explored?.image ?? 1) - 1)];
+      const at = view?.position[axisNumber(this.axis.value as Axis)] ?? 0;
+      this.at.dataset.of = this.axis.value;
+      this.at.min = String(at - FIRST_EXTENT);
+      this.at.max = String(at + FIRST_EXTENT);
+      this.at.step = String(studio.episode?.resolution ?? 1);
+      this.at.value = String(at);
+    }
+    this.show();
+  }
+
+  private follow({ axis, at, extent, edge }: SliceAnswer): void {
+    if (axis !== this.axis.value) return;
+    const beyond = this.at.valueAsNumber < extent[0] - edge || this.at.valueAsNumber > extent[1] + edge;
+    const first = this.at.dataset.seen !== axis;      // later, what is dragged stays
+    this.at.dataset.seen = axis;
+    this.at.min = String(extent[0]);
+    this.at.max = String(extent[1]);
+    this.at.step = String(edge);
+    if (beyond || first) this.at.value = String(at);
+  }
+
   private show(): void {
     this.showSlice();
     this.showVoxel();
@@ -86,6 +125,7 @@ export class LooksPanel {
     byId("slice-legend").hidden = !slice;
     if (!slice) return refill(byId("slice-legend"));
     byId("slice-value").textContent = `${slice.axis} = ${show(slice.at)} m${
+      slice.image !== undefined ? `, after image ${slice.image}` : ""}${
       slice.level > 0 ? `, cells of ${show(slice.edge * 2 ** slice.level)} m` : ""}`;
     refill(byId("slice-legend"), ...cellStates.map((state) => {
       const odds = state === "free" ? 255 - SURE : SURE;

@@ -2,7 +2,8 @@
 // What the server answers about a planned scan: voxels, slices of the map, places that were left
 // out, views. Numbers are shown as they come.
 import { show } from "./units";
-import type { LeftOutAnswer, LeftOutReason, SliceAnswer, Vec3, ViewAnswer, VoxelAnswer } from "./types";
+import type { ImageOfVoxel, LeftOutAnswer, LeftOutReason, SliceAnswer, Vec3, ViewAnswer, VoxelAnswer }
+  from "./types";
 
 // ---- blobs: four letters, then 32-bit little-endian numbers ---------------------------------------
 
@@ -134,22 +135,28 @@ export function voxelInWords(voxel: VoxelAnswer): [string, string][] {
   const rows: [string, string][] = [
     ["Voxel", `${voxel.middle.map((v) => show(v)).join(", ")} m`],
     ["State", stateNames[voxel.state]]];
+  const { image, known_from: known, images = [], share = 0 } = voxel;
+  if (image !== undefined) {
+    rows.push(["Known from", known === null || known === undefined ? "not yet"
+      : known === 0 ? "the start, taken to be free" : `image ${known}`]);
+  }
   if (voxel.state !== "unknown") {
     rows.push(["Log odds", String(Number(voxel.log_odds.toPrecision(7)))]);
     rows.push(["Measured", voxel.observations === null ? "not counted (map.observations)"
       : `${voxel.observations} times`]);
   }
+  if (image !== undefined) return rows;
   if (voxel.weight === 0) rows.push(["Region", "outside of it"]);
   else {
-    rows.push(["Told by all images", `${three(100 * voxel.share)} %`]);
-    rows.push(["Seen by", voxel.images.length === 0 ? "no image"
-      : `${voxel.images.length} image${voxel.images.length === 1 ? "" : "s"}`]);
+    rows.push(["Told by all images", `${three(100 * share)} %`]);
+    rows.push(["Seen by", images.length === 0 ? "no image"
+      : `${images.length} image${images.length === 1 ? "" : "s"}`]);
   }
   return rows;
 }
 
 export function imageInWords({ tour, number, distance, mm_per_pixel, incidence_deg }:
-  VoxelAnswer["images"][number]): string {
+  ImageOfVoxel): string {
   return `${tour === undefined ? "" : `tour ${tour + 1}, `}image ${number}: ${three(mm_per_pixel)
     } mm a pixel from ${three(distance)} m${
     incidence_deg === undefined ? "" : ` at ${three(incidence_deg)}\u00b0`}`;

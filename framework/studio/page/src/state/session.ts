@@ -311,6 +311,7 @@ export class Session {
         if (message.tab !== this.parts.tab || message.edit !== this.drag?.edit) return;
         return this.tell({ what: "estimate", message });
       case "raced":
+      case "backdrop":
       case "image":
       case "pace":
       case "run":

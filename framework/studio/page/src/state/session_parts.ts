@@ -22,6 +22,7 @@ export type Link = "connecting" | "open" | "lost";
 export interface Event {
   what: "link" | "welcome" | "document" | "standing" | "world" | "note" | "flown" | "picture" |
     "wrote" | "raced" | "estimate" | "image" | "pace" | "run" | "runs" | "look" | "first_flight" |
+    "backdrop" |
     "script" | "worker" | "settled";
   message?: ServerMessage;
   text?: string;

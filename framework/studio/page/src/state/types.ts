@@ -324,11 +324,15 @@ export interface VoxelAnswer {
   state: "unknown" | "free" | "occupied" | "between";
   log_odds: number;
   observations: number | null;   // null: the map does not count them
-  weight: number;
-  share: number;                 // what all images tell of it
-  images: { tour?: number; number: number; distance: number; pixels: number; mm_per_pixel: number;
+  image?: number;                // of an exploration: so many are in the map
+  known_from?: number | null;    // likewise: since which it is known; 0: since the start
+  weight?: number;               // of a scan
+  share?: number;                // what all images tell of it
+  images?: { tour?: number; number: number; distance: number; pixels: number; mm_per_pixel: number;
             incidence_deg?: number; told: number }[];
 }
+
+export type ImageOfVoxel = NonNullable<VoxelAnswer["images"]>[number];
 
 export interface SliceAnswer {
   type: "slice";
@@ -336,6 +340,8 @@ export interface SliceAnswer {
   axis: "x" | "y" | "z";
   at: number;                    // m, middle of the layer
   edge: number;                  // of a voxel
+  extent: [number, number];      // m, middles of the first and the last layer of the map
+  image?: number;                // of an exploration: so many are in the map
   level: number;                 // a cell has 2^level voxels either way
   lower: [number, number];
   columns: number;
@@ -372,6 +378,23 @@ export interface ViewAnswer {
 
 export type LookAnswer = VoxelAnswer | SliceAnswer | LeftOutAnswer | ViewAnswer;
 
+// A raster beneath the scene, or why it is not there.
+export interface BackdropPicture {
+  type: "backdrop";
+  file: string;                  // its name
+  system: string;                // of its coordinates
+  heights: boolean;              // drawn as hills in the light
+  width: number;                 // pixels of the picture
+  height: number;
+  pixel: number;                 // m
+  pixel_of_file: number;
+  cells: number;                 // along each side
+  corners: number[];             // x, y, ... of their corners, m, rows from the top
+  picture: string;               // blob, as backdrop.ts reads it
+}
+
+export type BackdropMessage = BackdropPicture | { type: "backdrop"; why: string };
+
 export interface PlanningProgress {
   type: "progress";
   revision: number;
@@ -393,6 +416,7 @@ export type ServerMessage =
   | { type: "runs"; id: string; folders: string[] }
   | { type: "pace"; paused: boolean }
   | LookAnswer
+  | BackdropMessage
   | FirstFlight
   | ({ type: "world" } & World)
   | { type: "refused"; id?: string; edit?: number; why: string }

@@ -6,6 +6,7 @@ import { growthIn, grownBy, imagesBy, type Growth, type LiveEpisode } from "../s
 import type { ExplorationWorld } from "../state/types";
 import type { Studio } from "../studio";
 import { blob } from "./blobs";
+import { cutMaterial } from "./solids";
 import type { Stage } from "./stage";
 
 const LIVE = "live";       // no blob
@@ -47,6 +48,11 @@ export class ExplorationView {
   bounds(): THREE.Box3 {
     return this.growth && this.voxels.visible
       ? new THREE.Box3().setFromArray(this.growth.middles) : new THREE.Box3();
+  }
+
+  // What is cut away of the map; null: nothing.
+  cutBy(plane: THREE.Plane | null): void {
+    cutMaterial(this.voxels.material, plane);
   }
 
   private get told(): ExplorationWorld | undefined {

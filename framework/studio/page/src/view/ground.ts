@@ -15,6 +15,7 @@ export class Ground {
     this.plane = new THREE.Mesh(new THREE.PlaneGeometry(4 * HALF, 4 * HALF),
                                 new THREE.MeshBasicMaterial());
     this.plane.position.z = -0.03;
+    this.plane.renderOrder = -3;    // a backdrop is drawn over it
     this.plane.material.polygonOffset = true;
     this.plane.material.polygonOffsetFactor = 2;
     this.plane.material.polygonOffsetUnits = 8;

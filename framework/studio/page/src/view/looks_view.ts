@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // A look into a planned scan: a slice of its map, places that were left out, a voxel that was clicked
-// at, and the view under the mouse with its motions, its rays and the voxels that it tells of.
+// at, and the view under the mouse with its motions, its rays and the voxels that it tells of. Into an
+// exploration: slices and voxels of its map after the image at the play head.
 import * as THREE from "three";
 import { axisNumber, placesIn, reasonColours, sliceCorners, sliceHit, texelsIn, toldIn,
          type Axis, type Places, type Told } from "../state/looks";
+import { imagesBy } from "../state/exploration";
 import { viewAtTime, viewsOf } from "../state/site";
 import { colourOf } from "../state/prediction";
 import type { LeftOutAnswer, LeftOutReason, ScanWorld, ServerMessage, SliceAnswer, Vec3, ViewAnswer, VoxelAnswer }
   from "../state/types";
 import type { Studio } from "../studio";
+import { inReport } from "./report";
 import { Ribbon } from "./ribbon";
 import type { Stage } from "./stage";
 
@@ -32,6 +35,9 @@ export class LooksView {
   private readonly asked = new Map<string, string>();     // the newest question of each type
   private wanted: { axis: Axis; at: number } | null = null;
   private waiting = false;                                // for a slice
+  private live = false;                                   // of an exploration: it is being planned
+  private folder = "";                                    // likewise: of a run
+  private voxelOf = -1;                                   // likewise: the image it was asked for
   private hovered = "";
   private held = false;                                   // the view stays when the mouse leaves it
   private timer = 0;
@@ -70,12 +76,18 @@ export class LooksView {
       if (what === "look" && message) this.take(message);
       if (what === "note" && message?.type === "failed") this.failed(message.id);
       if (what === "world") this.forget();
+      if (what === "image" && this.live !== (studio.live !== null)) this.begin();
       const judged = message?.type === "answer" && message.edit === null &&
         ["converged", "certified", "rejected"].includes(message.grade);
       if (what === "welcome") this.waiting = false;      // what was asked before is lost
       if (what === "welcome" || (what === "standing" && judged)) this.refresh();
     });
     studio.on(["look"], () => this.paint());
+    // What of an exploration is shown, or the map at another image.
+    studio.on(["episode"], () => {
+      if (this.live !== (studio.live !== null) || this.folder !== (studio.run?.folder ?? "")) this.begin();
+    });
+    studio.on(["time", "episode"], () => this.follow());
     stage.world.addEventListener("pointermove", (event) => this.hover(event));
     stage.world.addEventListener("pointerleave", () => this.leave());
     stage.before(() => this.cut());
@@ -84,6 +96,32 @@ export class LooksView {
 
   private get scan(): ScanWorld | undefined {
     return this.studio.session.world.scan;
+  }
+
+  // Whose map is asked about, of an exploration: after how many images, and of which run's folder.
+  get explored(): { image: number; folder?: string } | null {
+    const { episode, run, time } = this.studio;
+    if (!episode || this.scan || inReport) return null;
+    const folder = run?.folder.split("/").pop();
+    return { image: imagesBy(episode, time), ...(folder ? { folder } : {}) };
+  }
+
+  private begin(): void {
+    this.live = this.studio.live !== null;
+    this.folder = this.studio.run?.folder ?? "";
+    this.forget();
+    this.refresh();
+  }
+
+  // The play head is at another image: the same slice, the same voxel of the map then.
+  private follow(): void {
+    const { explored, slice, voxel } = this;
+    if (!explored) return;
+    if (slice && this.wanted && slice.image !== explored.image) this.askSlice(this.wanted);
+    if (voxel && voxel.image !== explored.image && this.voxelOf !== explored.image) {
+      this.voxelOf = explored.image;
+      this.ask({ type: "voxel", position: voxel.middle, ...explored });
+    }
   }
 
   private paint(): void {
@@ -107,11 +145,13 @@ export class LooksView {
 
   // The voxel that a ray meets: on the slice, where one is drawn, else the first occupied one.
   askVoxel(ray: THREE.Ray): boolean {
-    if (!this.scan) return false;
+    const { explored } = this;
+    if (!this.scan && !explored) return false;
     const origin = ray.origin.toArray() as Vec3, direction = ray.direction.toArray() as Vec3;
     const place = this.slice && sliceHit(this.slice, origin, direction);
-    this.ask(place ? { type: "voxel", position: place }
-      : { type: "voxel", ray: [...origin, ...direction] });
+    this.voxelOf = explored?.image ?? -1;
+    this.ask({ type: "voxel", ...(place ? { position: place } : { ray: [...origin, ...direction] }),
+               ...explored });
     return place !== null;
   }
 
@@ -126,7 +166,7 @@ export class LooksView {
     }
     if (this.waiting) return;
     this.waiting = true;
-    this.ask({ type: "slice", ...wanted });
+    this.ask({ type: "slice", ...wanted, ...this.explored });
   }
 
   askLeftOut(on: boolean): void {
@@ -189,6 +229,7 @@ export class LooksView {
   }
 
   private refresh(): void {
+    if (this.explored && this.wanted && !this.slice) this.askSlice(this.wanted);
     if (!this.scan) return;
     if (this.studio.look.leftOut && !this.leftOut) this.ask({ type: "left_out" });
     const extent = this.scan.map;
@@ -256,9 +297,10 @@ export class LooksView {
     this.slice = slice;
     this.changed();
     const { wanted } = this;
-    if (wanted.axis !== slice.axis || Math.abs(wanted.at - slice.at) > 0.51 * slice.edge) {
-      this.askSlice(wanted);
-    }
+    // Beyond the map there is its last layer; and the play head may have gone on.
+    const at = Math.min(Math.max(wanted.at, slice.extent[0]), slice.extent[1]);
+    if (wanted.axis !== slice.axis || Math.abs(at - slice.at) > 0.51 * slice.edge ||
+        (slice.image !== undefined && slice.image !== this.explored?.image)) this.askSlice(wanted);
   }
 
   private showPlaces(answer: LeftOutAnswer, buffer: ArrayBuffer): void {
