@@ -3,7 +3,7 @@
 import { isPainting } from "./state/painting";
 import { cutAt, moved, placeOfItem, retimed } from "./state/edits";
 import { actionOf } from "./state/keys";
-import { isSite } from "./state/site";
+import { isExplored, isSite } from "./state/site";
 import type { Vec3 } from "./state/types";
 import type { Rate, Studio } from "./studio";
 import { byId, forgetColours, typing } from "./view/dom";
@@ -189,7 +189,8 @@ export class Actions {
         return true;
       case "type":
         if (studio.mode === "place" || studio.mode === "aim" ||
-            (!studio.selection && studio.mode === "orbit" && isSite(studio.document))) {
+            (!studio.selection && studio.mode === "orbit" &&
+             (isSite(studio.document) || isExplored(studio.document)))) {
           parts.clickMiddle();
           return true;
         }

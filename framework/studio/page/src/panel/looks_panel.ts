@@ -19,7 +19,11 @@ export class LooksPanel {
   private readonly at = byId<HTMLInputElement>("slice-at");
 
   constructor(private readonly studio: Studio, private readonly looks: LooksView) {
-    this.on.addEventListener("change", () => this.slice());
+    this.on.addEventListener("change", () => {
+      // The first time at the height of the view that is shown now.
+      if (looks.explored && !this.at.dataset.seen) this.showExtent(true);
+      this.slice();
+    });
     this.axis.addEventListener("change", () => {
       this.showExtent(true);
       this.slice();
