@@ -57,6 +57,7 @@ export const explore = (browser, shot) => served(browser, shot, {
   const { x, y } = await page.evaluate((place) => window.lapwing.pageOf(place), start);
   let clicks = 0;
   for (const [right, down] of [[-85, -28], [-60, 60], [-110, 20], [-150, -40], [-30, 110]]) {
+    await page.$$eval("#notes button", (all) => all.forEach((close) => close.click()));
     await page.click("#place-start");
     await page.mouse.click(x + right, y + down);
     await waitRevision(page, revision + 1 + ++clicks);
@@ -84,11 +85,17 @@ async function whilePlanned(page, picture) {
   const { revision } = await studioState(page);
   const finished = await page.evaluate("window.lapwing.episode.images");
   await page.click("#tab-setup");
+  // Pressed from within the page: a quick machine is done before a mouse has come.
+  await page.evaluate(() => {
+    const watch = setInterval(() => {
+      if (!(window.lapwing.live > 0)) return;
+      clearInterval(watch);
+      document.querySelector("#pace-pause").click();
+    }, 20);
+  });
   await type(page, '[data-key="steps"]', "200");
   await page.click("#tab-film");
-  await page.waitForFunction("window.lapwing.live > 0", { timeout: PLANNED });
-  await page.click("#pace-pause");
-  await page.waitForFunction("window.lapwing.paused");
+  await page.waitForFunction("window.lapwing.paused", { timeout: PLANNED });
   await still(page);
   const first = await live();
   assert.ok(first > 0 && first < 200, `${first} images`);
