@@ -415,7 +415,7 @@ double ground_without(const TriangleMesh& mesh, const InterestRegion& region) {
   return cells > 0 ? static_cast<double>(unknown) / cells : 1;
 }
 
-// An estimate is to be right within a tenth: where more of the region than that is not known, none
+// Where more of the region than a tenth is not known, beside what was not known before, no estimate
 // is made.
 void require_known(const ScanWork& before, const InterestRegion& region, const MissionRun& run) {
   constexpr double kMostUnknown = 0.1;

@@ -93,7 +93,6 @@ TEST_F(RecipeFile, WhatIsWrongIsNamed) {
   }
 }
 
-// Whoever is judged by what it was trained with is told nothing.
 // NAME, NAME:SEED or NAME:FIRST-LAST as NAME:SEED each; a mesh as it is.
 std::vector<std::string> worlds_of(const std::string& text) {
   if (text.starts_with("{data:")) return {text};
@@ -108,6 +107,7 @@ std::vector<std::string> worlds_of(const std::string& text) {
   return worlds;
 }
 
+// Whoever is judged by what it was trained with is told nothing.
 TEST(ShippedRecipe, KnowsNoWorldOfTheFigures) {
   EXPECT_EQ(worlds_of("suburb:2-4"),
             (std::vector<std::string>{"suburb:2", "suburb:3", "suburb:4"}));
