@@ -394,23 +394,32 @@ GraphMaking graph_making(lua_State* state, const MissionRun& run, const Paramete
   return made;
 }
 
-// The share of a region's ground over and under which a mesh has nothing.
+// The share of a region's ground over and under which a mesh has no vertex. Cells are not smaller
+// than the distances of vertices.
 double ground_without(const TriangleMesh& mesh, const InterestRegion& region) {
-  constexpr int kCells = 64;  // along either side
+  constexpr double kLeastCell = 1;  // m
+  constexpr int kMostCells = 64;    // along either side
   const Eigen::Vector2d low = region.bounds().min().head<2>();
-  const Eigen::Vector2d cell = region.bounds().sizes().head<2>() / kCells;
-  std::vector<char> known(kCells * kCells, 0);
+  const Eigen::Vector2d size = region.bounds().sizes().head<2>();
+  const Eigen::Array2i count =
+      (size / kLeastCell).array().floor().cast<int>().max(1).min(kMostCells);
+  const Eigen::Vector2d cell = (size.array() / count.cast<double>()).matrix();
+  std::vector<char> known(static_cast<std::size_t>(count.prod()), 0);
+  const auto place = [&](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(count.x()) +
+           static_cast<std::size_t>(x);
+  };
   for (const Eigen::Vector3d& p : mesh.vertices) {
-    const Eigen::Vector2d at = (p.head<2>() - low).cwiseQuotient(cell);
-    if ((at.array() >= 0).all() && (at.array() < kCells).all())
-      known[static_cast<std::size_t>(at.y()) * kCells + static_cast<std::size_t>(at.x())] = 1;
+    const Eigen::Array2d at = (p.head<2>() - low).cwiseQuotient(cell).array();
+    if ((at >= 0).all() && (at < count.cast<double>()).all())
+      known[place(static_cast<int>(at.x()), static_cast<int>(at.y()))] = 1;
   }
   int cells = 0, unknown = 0;
-  for (int y = 0; y < kCells; ++y)
-    for (int x = 0; x < kCells; ++x) {
+  for (int y = 0; y < count.y(); ++y)
+    for (int x = 0; x < count.x(); ++x) {
       if (!region.heights_at(low + cell.cwiseProduct(Eigen::Vector2d(x + 0.5, y + 0.5)))) continue;
       ++cells;
-      unknown += !known[static_cast<std::size_t>(y) * kCells + static_cast<std::size_t>(x)];
+      unknown += !known[place(x, y)];
     }
   return cells > 0 ? static_cast<double>(unknown) / cells : 1;
 }
@@ -459,11 +468,14 @@ void change_graph(const ScanWork& before, const GraphMaking& made,
   if (!work.rules->empty())
     rules = ruled(std::make_unique<OpenSpace>(), *work.rules, work.prior->mapping.map);
   work.graph =
-      changed_graph(before.graph, was, *made.space, rules.get(), *made.sight, *work.information,
-                    starts, pinned, made.settings, run.settings.cancellation);
+      changed_graph(before.graph, was, before.pinned, *made.space, rules.get(), *made.sight,
+                    *work.information, starts, pinned, made.settings, run.settings.cancellation);
   const int first = work.graph.candidates.given - static_cast<int>(pinned.size());
   if (first < 1)
-    throw InputError("zones and the region leave none of the places where tours could begin");
+    throw InputError(
+        "no_fly_zones, flight_zones and regions leave none of the places where the tour of the "
+        "plan "
+        "before could begin: let go to plan it, or set start");
   std::iota(work.pinned.begin(), work.pinned.end(), first);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tours of views, and what scan missions may call.
+#include <algorithm>
 #include <cmath>
 
 #include <lua.hpp>
@@ -142,7 +143,9 @@ int solve_tour_of_run(lua_State* state) {
   TourRequest request;
   request.seed = run.settings.seed;
   if (given.integer("iterations") > 0) request.iteration_limit = given.integer("iterations");
-  if (run.settings.observe_estimate) request.iteration_limit = kEstimateIterations;
+  if (run.settings.observe_estimate)
+    request.iteration_limit =
+        std::min(request.iteration_limit.value_or(kEstimateIterations), kEstimateIterations);
   if (given.integer("evaluations") > 0) request.evaluation_limit = given.integer("evaluations");
   if (given.has("guard")) request.wall_clock_guard = given.number("guard");
   request.cancellation = run.settings.cancellation;

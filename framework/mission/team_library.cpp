@@ -121,7 +121,9 @@ TeamRequest team_request(lua_State* state, const MissionRun& run, const Paramete
   TeamRequest request;
   request.limits.seed = run.settings.seed;
   if (given.integer("iterations") > 0) request.limits.iteration_limit = given.integer("iterations");
-  if (run.settings.observe_estimate) request.limits.iteration_limit = kEstimateIterations;
+  if (run.settings.observe_estimate)
+    request.limits.iteration_limit =
+        std::min(request.limits.iteration_limit.value_or(kEstimateIterations), kEstimateIterations);
   if (given.integer("evaluations") > 0)
     request.limits.evaluation_limit = given.integer("evaluations");
   if (given.has("guard")) request.limits.wall_clock_guard = given.number("guard");

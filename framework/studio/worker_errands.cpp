@@ -459,12 +459,19 @@ Frame WorkerErrands::look_into_run(const Frame& asked) {
   const fs::path folder = kRuns / fs::path(asked.header.at("run").as_text());
   std::string looks = folder.string() + "\n" + look_of(folder / "episode.json") + "\n" +
                       look_of(folder / "plan.json") + "\n" + look_of(script_);
-  if (!looked_into_ || looks != looked_into_looks_) {
+  if (looks != looked_into_looks_) {
     looked_into_.reset();
-    if (const std::string why = complete_run_folder(folder); !why.empty()) throw InputError(why);
-    looked_into_ = replay_of_run(folder, script_, settings_, program_);
+    looked_into_looks_.clear();
+    looked_into_error_ = complete_run_folder(folder);
+    if (!looked_into_error_.empty()) throw InputError(looked_into_error_);
+    try {
+      looked_into_ = replay_of_run(folder, script_, settings_, program_);
+    } catch (const InputError& error) {
+      looked_into_error_ = error.what();
+    }
     looked_into_looks_ = std::move(looks);
   }
+  if (!looked_into_) throw InputError(looked_into_error_);
   return episode_answer(asked, *looked_into_);
 }
 

@@ -79,6 +79,7 @@ class WorkerErrands {
   Backdrop backdrop_;
   std::shared_ptr<EpisodeReplay> looked_into_;  // of the folder:
   std::string looked_into_looks_;               // its name, and what its files looked like
+  std::string looked_into_error_;               // why it could not be taken again
   std::set<std::filesystem::path> stated_reads_;
   std::string stated_looks_;  // of those files, when they were read
 };

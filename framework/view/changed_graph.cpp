@@ -38,8 +38,9 @@ class ChangedGraph {
         cancellation_(cancellation),
         now_(before.candidates.viewpoints.size(), -1) {}
 
-  ScanGraph make(const std::vector<Viewpoint>& starts, const std::vector<Viewpoint>& pinned) {
-    choose(starts, pinned);
+  ScanGraph make(const std::vector<Viewpoint>& starts, const std::vector<Viewpoint>& pinned,
+                 std::span<const int> pinned_before) {
+    choose(starts, pinned, pinned_before);
     throw_if_cancelled();
     weigh();
     throw_if_cancelled();
@@ -78,7 +79,8 @@ class ChangedGraph {
     add(view, old);
   }
 
-  void choose(const std::vector<Viewpoint>& starts, const std::vector<Viewpoint>& pinned) {
+  void choose(const std::vector<Viewpoint>& starts, const std::vector<Viewpoint>& pinned,
+              std::span<const int> pinned_before) {
     const auto& views = before_.candidates.viewpoints;
     std::vector<char> stays(views.size());
     parallel_for(views.size(), s_.threads, [&](std::size_t k) {
@@ -88,8 +90,10 @@ class ChangedGraph {
     });
     for (const Viewpoint& view : starts) give(view);
     const auto given = static_cast<std::size_t>(before_.candidates.given);
+    std::vector<char> was_pinned(views.size(), 0);
+    for (const int view : pinned_before) was_pinned[static_cast<std::size_t>(view)] = 1;
     for (std::size_t k = 0; k < given; ++k)
-      if (stays[k] && now_[k] < 0) add(views[k], static_cast<int>(k));
+      if (stays[k] && now_[k] < 0 && !was_pinned[k]) add(views[k], static_cast<int>(k));
     for (const Viewpoint& view : pinned) give(view);
     made_.candidates.given = static_cast<int>(old_.size());
     for (std::size_t k = given; k < views.size(); ++k)
@@ -300,13 +304,14 @@ class ChangedGraph {
 
 }  // namespace
 
-ScanGraph changed_graph(const ScanGraph& before, const InterestRegion& was, const FreeSpace& space,
+ScanGraph changed_graph(const ScanGraph& before, const InterestRegion& was,
+                        std::span<const int> pinned_before, const FreeSpace& space,
                         const FreeSpace* rules, const VisibleVoxels& visible,
                         const ViewInformation& information, const std::vector<Viewpoint>& starts,
                         const std::vector<Viewpoint>& pinned, const ScanGraphSettings& settings,
                         const CancellationToken* cancellation) {
   return ChangedGraph(before, was, space, rules, visible, information, settings, cancellation)
-      .make(starts, pinned);
+      .make(starts, pinned, pinned_before);
 }
 
 }  // namespace lapwing

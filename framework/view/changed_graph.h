@@ -3,6 +3,7 @@
 // estimates while these are dragged.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "framework/view/scan_graph.h"
@@ -15,11 +16,13 @@ namespace lapwing {
 // Views are added for starts and pinned views alone: the map, and places to look from, are those of
 // the plan before. Motions are not matched again for the new region.
 //
-// `was`: the region of `before`; `rules`: where zones and a pilot's sight alone leave the space
+// `was`: the region of `before`; `pinned_before`: its views that were pinned, which go unless they
+// are among `pinned`; `rules`: where zones and a pilot's sight alone leave the space
 // open, null where they leave all of it; `space` is free in map and mesh as well. `starts` come
 // first, then those given before that are not among them, then `pinned`; all are free. NothingSeen
 // where the views see nothing of the region, else throws as make_scan_graph.
-ScanGraph changed_graph(const ScanGraph& before, const InterestRegion& was, const FreeSpace& space,
+ScanGraph changed_graph(const ScanGraph& before, const InterestRegion& was,
+                        std::span<const int> pinned_before, const FreeSpace& space,
                         const FreeSpace* rules, const VisibleVoxels& visible,
                         const ViewInformation& information, const std::vector<Viewpoint>& starts,
                         const std::vector<Viewpoint>& pinned, const ScanGraphSettings& settings,

@@ -19,8 +19,12 @@ local function possible(run, in_passing)
               or images.wanted(run) or exploration.wanted(run))
 end
 
+-- Where a tour ends elsewhere than it begins, and begins at a view of the first flight, nobody says
+-- which views those are in a changed graph.
 local function settings(run, graph)
-  return { without = LATE, near = views.wanted(run) and "" or NEAR, graph = graph }
+  local o = run.options
+  local fixed = views.wanted(run) or (o.finish and not o.start)
+  return { without = LATE, near = fixed and "" or NEAR, graph = graph }
 end
 
 local changed = setmetatable({}, { __mode = "k" })  -- of runs

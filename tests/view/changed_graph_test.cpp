@@ -65,8 +65,8 @@ class ChangedGraphs : public ::testing::Test {
   ScanGraph changed(const AlignedBox3d& region, const FreeSpace& space,
                     const std::vector<Viewpoint>& starts = {},
                     const std::vector<Viewpoint>& pinned = {}) const {
-    return changed_graph(before_, was_, space, &space, seeing(region), Near(), starts, pinned,
-                         settings_);
+    return changed_graph(before_, was_, pinned_before_, space, &space, seeing(region), Near(),
+                         starts, pinned, settings_);
   }
   // What each view tells, as if it were looked from anew.
   void expect_scores(const ScanGraph& graph, const AlignedBox3d& region) const {
@@ -85,6 +85,7 @@ class ChangedGraphs : public ::testing::Test {
                    with_room(free_space_of(std::shared_ptr<const MeshScene>(wall_face())), 0.5));
   ScanGraphSettings settings_;
   ScanGraph before_;
+  std::vector<int> pinned_before_;
 };
 
 TEST_F(ChangedGraphs, NothingChangedIsTheGraphBefore) {
@@ -132,6 +133,21 @@ TEST_F(ChangedGraphs, ViewsAndMotionsInAZoneAreLeftOut) {
 }
 
 // Behind the starts comes what was given before, then the pinned views.
+// A view that was pinned stays once where it is pinned again, and goes where it is not.
+TEST_F(ChangedGraphs, PinnedViewsOfBeforeAreNotGivenTwice) {
+  before_.candidates.given = 2;
+  pinned_before_ = {1};
+  const Viewpoint pinned = before_.candidates.viewpoints[1];
+  const ScanGraph kept = changed(was_, *space_, {}, {pinned});
+  EXPECT_EQ(kept.candidates.given, 2);
+  EXPECT_EQ(kept.candidates.viewpoints.size(), before_.candidates.viewpoints.size());
+  EXPECT_EQ(kept.candidates.viewpoints[1].position, pinned.position);
+  expect_scores(kept, was_);
+  const ScanGraph without = changed(was_, *space_, {}, {});
+  EXPECT_EQ(without.candidates.given, 1);
+  EXPECT_EQ(without.candidates.viewpoints.size(), before_.candidates.viewpoints.size() - 1);
+}
+
 TEST_F(ChangedGraphs, AStartAndAPinnedViewAreJoined) {
   const Viewpoint start{{-4, -2, 4}, 0, 0}, pinned{{-3, 2, 4}, 0, 0};
   const ScanGraph graph = changed(was_, *space_, {start}, {pinned});
@@ -151,7 +167,7 @@ TEST_F(ChangedGraphs, AStartAndAPinnedViewAreJoined) {
 TEST_F(ChangedGraphs, EndsWhenToldTo) {
   CancellationToken token;
   token.cancel();
-  EXPECT_THROW(changed_graph(before_, was_, *space_, nullptr, seeing(was_), Near(), {}, {},
+  EXPECT_THROW(changed_graph(before_, was_, {}, *space_, nullptr, seeing(was_), Near(), {}, {},
                              settings_, &token),
                Cancelled);
 }

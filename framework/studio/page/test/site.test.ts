@@ -70,7 +70,7 @@ test("an estimate says how far it goes, and why there is none", () => {
   assert.equal(estimateInWords(told), "About 20 images in 2 min, 25 % of the known surface");
   assert.match(estimateInWords({ ...told, tours: 2, changed: true }), /^Roughly 20 .* of 2 tours/);
   assert.equal(estimateInWords({ type: "estimate", edit: 1, tab: "a", why: "nothing is known" }),
-               "Let go to plan it: nothing is known");
+               "No estimate: nothing is known");
   assert.match(estimateInWords({ type: "estimate", edit: 1, tab: "a" }), /no views of this state/);
 });
 

@@ -112,7 +112,7 @@ export function viewAtTime(views: View[], time: number): number {
 export function estimateInWords(
   { tours = 0, images = 0, seconds = 0, known = 0, seen = 0, why = "", changed = false }: Estimate,
 ): string {
-  if (tours === 0 && why) return `Let go to plan it: ${why}`;
+  if (tours === 0 && why) return `No estimate: ${why}`;
   if (tours === 0) return "Let go to plan it: there are no views of this state to estimate with.";
   const share = known > 0 ? `${show((100 * seen) / known)} % of the known surface` : "";
   return `${changed ? "Roughly" : "About"} ${images} images in ${show(seconds / 60)} min${
