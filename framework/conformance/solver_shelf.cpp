@@ -179,7 +179,7 @@ class Watched final : public DifferentiableCost<Watched, 1> {
   using Formula = DifferentiableCost<Watched, 1>;
 
  public:
-  Watched(Watch& watch, int power) : watch_(watch), power_(power) {}
+  Watched(SolverWatch& watch, int power) : watch_(watch), power_(power) {}
   FunctionShape declare(const ProblemSetting& setting) {
     return {.blocks = {setting.layout.index("place")},
             .rows = 1,
@@ -199,11 +199,11 @@ class Watched final : public DifferentiableCost<Watched, 1> {
   }
 
  private:
-  Watch& watch_;
+  SolverWatch& watch_;
   int power_;
 };
 
-TrajectoryProblem watched(Watch& watch, int power) {
+TrajectoryProblem watched(SolverWatch& watch, int power) {
   TrajectoryProblem problem = cart(100);
   start_at(problem, 100);
   problem.add_cost("watched", 1.0, std::make_unique<Watched>(watch, power));
@@ -213,11 +213,11 @@ TrajectoryProblem watched(Watch& watch, int power) {
 
 }  // namespace
 
-TrajectoryProblem watched_problem(Watch& watch) {
+TrajectoryProblem watched_problem(SolverWatch& watch) {
   return watched(watch, 2);
 }
 
-TrajectoryProblem watched_quadratic_problem(Watch& watch) {
+TrajectoryProblem watched_quadratic_problem(SolverWatch& watch) {
   return watched(watch, 1);
 }
 

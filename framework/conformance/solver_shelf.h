@@ -24,16 +24,16 @@ std::vector<ShelfProblem> solver_shelf();
 
 // Counts how often the problem asks a term of its own: the work of a solver as the kernel sees it,
 // whatever the solver says of itself. May act in the middle of a solve.
-struct Watch {
+struct SolverWatch {
   std::atomic<int> calls = 0;
   int cancel_after = 0;  // calls, then the token is cancelled; 0: never
   CancellationToken token;
   double pause = 0;  // s, slept in every call
 };
 // Takes any solver some tens of evaluations: the minimum of x^4, from far away. Curved.
-TrajectoryProblem watched_problem(Watch& watch);
+TrajectoryProblem watched_problem(SolverWatch& watch);
 // The same with x^2, for solvers of quadratic problems alone.
-TrajectoryProblem watched_quadratic_problem(Watch& watch);
+TrajectoryProblem watched_quadratic_problem(SolverWatch& watch);
 // Quadratic programs of a few numbers, dense; not yet finished.
 void add_small_programs(std::vector<ShelfProblem>& shelf);
 

@@ -15,7 +15,7 @@ constexpr double kGuard = 0.05;   // s
 
 class CancelAtReport final : public Progress {
  public:
-  explicit CancelAtReport(Watch& watch) : watch_(watch) {}
+  explicit CancelAtReport(SolverWatch& watch) : watch_(watch) {}
   void report(double, const std::string&) override {
     if (++reports_ != 2) return;
     watch_.token.cancel();
@@ -24,7 +24,7 @@ class CancelAtReport final : public Progress {
   int at() const { return at_; }
 
  private:
-  Watch& watch_;
+  SolverWatch& watch_;
   int reports_ = 0, at_ = -1;
 };
 
@@ -34,7 +34,7 @@ class SolverStops {
       : solver_(solver), findings_(findings) {}
 
   void run() {
-    Watch watch;
+    SolverWatch watch;
     const SolveResult whole = solve(watch, {});
     if (whole.report.status == SolveStatus::unsupported && !quadratic_) {
       quadratic_ = true;
@@ -53,7 +53,7 @@ class SolverStops {
   }
 
  private:
-  SolveResult solve(Watch& watch, SolveRequest request) const {
+  SolveResult solve(SolverWatch& watch, SolveRequest request) const {
     const TrajectoryProblem problem =
         quadratic_ ? watched_quadratic_problem(watch) : watched_problem(watch);
     watch.calls = 0;
@@ -62,7 +62,7 @@ class SolverStops {
   }
 
   void limited() {
-    Watch watch;
+    SolverWatch watch;
     SolveRequest request;
     request.iteration_limit = 1;
     solve(watch, request);
@@ -73,7 +73,7 @@ class SolverStops {
   }
 
   void cancelled_in_a_term() {
-    Watch watch;
+    SolverWatch watch;
     watch.cancel_after = 3;
     const SolveResult result = solve(watch, {});
     stopped("cancellation", "cancelled after 3 evaluations", watch.cancel_after, watch, result,
@@ -81,7 +81,7 @@ class SolverStops {
   }
 
   void cancelled_by_progress() {
-    Watch watch;
+    SolverWatch watch;
     CancelAtReport progress(watch);
     SolveRequest request;
     request.progress = &progress;
@@ -95,7 +95,7 @@ class SolverStops {
   void out_of_time() {
     for (const double guard : {0.0, kGuard}) {
       if (findings_.failed("wall clock")) return;
-      Watch watch;
+      SolverWatch watch;
       watch.pause = kPause;
       SolveRequest request;
       request.wall_clock_guard = guard;
@@ -108,7 +108,7 @@ class SolverStops {
 
   // It must make no more than some evaluations after `begun`, and say why it ended, unless it would
   // have come to its end by then.
-  void stopped(const char* check, const std::string& how, int begun, const Watch& watch,
+  void stopped(const char* check, const std::string& how, int begun, const SolverWatch& watch,
                const SolveResult& result, SolveStatus expected) {
     const int after = watch.calls - begun;
     findings_.expect(check, after <= kToStop, [&] {

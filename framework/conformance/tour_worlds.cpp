@@ -24,7 +24,7 @@ Matrix direct_seconds(const TourDefinition& d, int n) {
   for (int a = 0; a < n && !d.legs.empty(); ++a) {
     for (int b = 0; b < n; ++b) seconds[a][b] = d.legs[static_cast<std::size_t>(a) * n + b];
   }
-  for (const Motion& m : d.motions) {
+  for (const TourMotion& m : d.motions) {
     seconds[m.a][m.b] = std::min(seconds[m.a][m.b], m.seconds);
     seconds[m.b][m.a] = seconds[m.a][m.b];
   }
@@ -255,13 +255,13 @@ std::vector<TourWorld> tour_worlds() {
   add("budget for all", random_tour(7, {.views = 7, .budget_share = 4}));
   add("a tiny budget", random_tour(8, {.budget_share = 0.15}));
   TourDefinition apart = random_tour(9, {.loop = false});
-  std::erase_if(apart.motions, [](const Motion& m) { return m.a == 9 || m.b == 9; });
+  std::erase_if(apart.motions, [](const TourMotion& m) { return m.a == 9 || m.b == 9; });
   add("an end that no motion leads to", apart);
   TourDefinition poor = random_tour(10, {});
   poor.budget = 0.5 * poor.view_seconds[0];
   add("a budget too small for one view", poor);
   TourDefinition lonely = random_tour(11, {});
-  std::erase_if(lonely.motions, [](const Motion& m) { return m.a == 0 || m.b == 0; });
+  std::erase_if(lonely.motions, [](const TourMotion& m) { return m.a == 0 || m.b == 0; });
   add("a start that no motion leaves", lonely);
   return worlds;
 }
@@ -292,7 +292,7 @@ std::vector<TeamWorld> team_worlds() {
   TourDefinition home = base(24, {.budget_share = 0.3}), other = home;
   other.start = other.end = 5;
   other.budget *= 1.5;
-  for (Motion& motion : other.motions) motion.seconds *= 2;  // a slower vehicle
+  for (TourMotion& motion : other.motions) motion.seconds *= 2;  // a slower vehicle
   add("two homes and two vehicles", {home, other});
   TourDefinition few = base(25, {.budget_share = 0.6, .image_limit = 3});
   add("few images each", {few, few});

@@ -34,6 +34,13 @@ void EpisodeReplay::begin() {
   taken_ = 0;
 }
 
+void EpisodeReplay::forget() {
+  map_.reset();
+  kept_.clear();
+  kept_leaves_ = 0;
+  taken_ = 0;
+}
+
 void EpisodeReplay::take_next() {
   Viewpoint view;
   {

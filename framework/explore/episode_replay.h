@@ -37,6 +37,8 @@ class EpisodeReplay {
   // After how many images the voxel was known first, up to so many; 0: at the start. Nothing where
   // it is not. (What is known stays known.)
   std::optional<int> known_from(const VoxelKey& voxel, int images);
+  // Drops the map and all states that are kept: the next question begins at the start.
+  void forget();
 
  private:
   void begin();

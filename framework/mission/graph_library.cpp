@@ -2,89 +2,19 @@
 // The graph of views that tours are planned on.
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
 
 #include <lua.hpp>
 
 #include "framework/core/log.h"
 #include "framework/core/parallel.h"
 #include "framework/core/units.h"
+#include "framework/mission/graph_change.h"
 #include "framework/mission/guard.h"
 #include "framework/mission/hidden_parts.h"
 #include "framework/mission/lua_value.h"
 #include "framework/mission/scan_objects.h"
-#include "framework/view/changed_graph.h"
 
 namespace lapwing {
-
-std::vector<PursuitView> stops_of(const std::vector<Eigen::Vector3d>& points, const Viewpoint& from,
-                                  const Viewpoint& to, const Vehicle& vehicle) {
-  constexpr double kTiltShare = 0.9;  // of the gimbal's rate
-  const double turn = std::remainder(to.yaw - from.yaw, 2 * EIGEN_PI);
-  const double tilt_seconds = vehicle.gimbal ? std::abs(to.pitch - from.pitch) /
-                                                   (kTiltShare * vehicle.gimbal->pitch_rate_max)
-                                             : 0;
-  const double length = path_length(points);
-  std::vector<PursuitView> stops;
-  double along = 0, before = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (i > 0) along += (points[i] - points[i - 1]).norm();
-    const double share = length > 0 ? along / length : i > 0;
-    stops.push_back({i, from.yaw + share * turn, (share - before) * tilt_seconds});
-    before = share;
-  }
-  return stops;
-}
-
-std::optional<std::size_t> ScanWork::find_motion(int a, int b) const {
-  const auto& motions = graph.motions.motions;  // by a, then b
-  const std::pair<int, int> wanted = std::minmax(a, b);
-  const auto found = std::lower_bound(motions.begin(), motions.end(), wanted,
-                                      [](const ViewMotion& m, const std::pair<int, int>& pair) {
-                                        return std::pair(m.a, m.b) < pair;
-                                      });
-  if (found == motions.end() || std::pair(found->a, found->b) != wanted) return std::nullopt;
-  return static_cast<std::size_t>(found - motions.begin());
-}
-
-std::size_t ScanWork::motion_between(int a, int b) const {
-  const auto found = find_motion(a, b);
-  if (!found) throw Error("a tour passes from view to view without a motion");
-  return *found;
-}
-
-std::unique_ptr<FreeSpace> space_of(const Prior& prior, double mesh_room) {
-  std::shared_ptr<const Map> map = prior.mapping.map;
-  return free_in_both(free_space_of(map), with_room(free_space_of(prior.mesh), mesh_room));
-}
-
-std::shared_ptr<const VisibleVoxels> make_sight(ScanWork& work, const MissionRun& run,
-                                                const Parameters& given,
-                                                const PluginChoice& information,
-                                                const Eigen::AlignedBox3d* within) {
-  work.information = run.settings.registry->create<ViewInformation>(
-      information.type, information.parameters, "information");
-  SightSettings sight;
-  sight.pinhole = pinhole_of(given.table("camera"));
-  sight.range = given.number("range");
-  if (given.has("usable_range")) sight.usable_range = given.number("usable_range");
-  sight.usable_incidence = radians(given.number("usable_incidence_deg"));
-  sight.region = region_of(given.table("region"));
-  if (within) sight.within = *within;
-  work.prior->mapping.map->set_threads(1);  // views are shared among threads, not their rays
-  work.visible = std::make_shared<VisibleVoxels>(work.prior->mapping.map, work.prior->mesh, sight);
-  const TriangleMesh& known = work.prior->mesh->mesh();
-  if (std::none_of(known.vertices.begin(), known.vertices.end(),
-                   [&](const Eigen::Vector3d& p) { return sight.region.contains(p); }))
-    throw InputError(
-        given.origin("region"),
-        "the region of interest has no surface: the prior mesh does not reach into it");
-  sight.across = static_cast<int>(given.integer("across"));
-  work.weighed_fully = sight.across == 0 || sight.across >= sight.pinhole.width;
-  if (sight.across == 0) return work.visible;
-  return std::make_shared<VisibleVoxels>(work.prior->mapping.map, work.prior->mesh, sight);
-}
 
 namespace {
 
@@ -394,91 +324,6 @@ GraphMaking graph_making(lua_State* state, const MissionRun& run, const Paramete
   return made;
 }
 
-// The share of a region's ground over and under which a mesh has no vertex. Cells are not smaller
-// than the distances of vertices.
-double ground_without(const TriangleMesh& mesh, const InterestRegion& region) {
-  constexpr double kLeastCell = 1;  // m
-  constexpr int kMostCells = 64;    // along either side
-  const Eigen::Vector2d low = region.bounds().min().head<2>();
-  const Eigen::Vector2d size = region.bounds().sizes().head<2>();
-  const Eigen::Array2i count =
-      (size / kLeastCell).array().floor().cast<int>().max(1).min(kMostCells);
-  const Eigen::Vector2d cell = (size.array() / count.cast<double>()).matrix();
-  std::vector<char> known(static_cast<std::size_t>(count.prod()), 0);
-  const auto place = [&](int x, int y) {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(count.x()) +
-           static_cast<std::size_t>(x);
-  };
-  for (const Eigen::Vector3d& p : mesh.vertices) {
-    const Eigen::Array2d at = (p.head<2>() - low).cwiseQuotient(cell).array();
-    if ((at >= 0).all() && (at < count.cast<double>()).all())
-      known[place(static_cast<int>(at.x()), static_cast<int>(at.y()))] = 1;
-  }
-  int cells = 0, unknown = 0;
-  for (int y = 0; y < count.y(); ++y)
-    for (int x = 0; x < count.x(); ++x) {
-      if (!region.heights_at(low + cell.cwiseProduct(Eigen::Vector2d(x + 0.5, y + 0.5)))) continue;
-      ++cells;
-      unknown += !known[place(x, y)];
-    }
-  return cells > 0 ? static_cast<double>(unknown) / cells : 1;
-}
-
-// Where more of the region than a tenth is not known, beside what was not known before, no estimate
-// is made.
-void require_known(const ScanWork& before, const InterestRegion& region, const MissionRun& run) {
-  constexpr double kMostUnknown = 0.1;
-  const InterestRegion& was = before.visible->settings().region;
-  if (!run.settings.observe_estimate || region == was) return;
-  const TriangleMesh& mesh = before.prior->mesh->mesh();
-  const double unknown = ground_without(mesh, region);
-  if (unknown - ground_without(mesh, was) <= kMostUnknown) return;
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "the first flight of the plan before shows nothing of %.0f %% of this region",
-                100 * unknown);
-  Value told = Value::map();
-  told.set("why", text);
-  run.settings.observe_estimate(told);
-  throw Cancelled();
-}
-
-// Where nothing but rules is asked for.
-class OpenSpace final : public FreeSpace {
- public:
-  bool point_free(const Eigen::Vector3d&) const override { return true; }
-  bool segment_free(const Eigen::Vector3d&, const Eigen::Vector3d&) const override { return true; }
-  bool swept_box_free(const Eigen::Vector3d&, const Eigen::Vector3d&,
-                      const Eigen::Vector3d&) const override {
-    return true;
-  }
-  Eigen::AlignedBox3d bounds() const override {
-    const Eigen::Vector3d all = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
-    return {-all, all};
-  }
-};
-
-// The graph of a plan before, for an estimate. Pinned views are the last of those that are given.
-void change_graph(const ScanWork& before, const GraphMaking& made,
-                  const std::vector<Viewpoint>& starts, const std::vector<Viewpoint>& pinned,
-                  const MissionRun& run) {
-  ScanWork& work = *made.work;
-  const InterestRegion& was = before.visible->settings().region;
-  std::unique_ptr<FreeSpace> rules;
-  if (!work.rules->empty())
-    rules = ruled(std::make_unique<OpenSpace>(), *work.rules, work.prior->mapping.map);
-  work.graph =
-      changed_graph(before.graph, was, before.pinned, *made.space, rules.get(), *made.sight,
-                    *work.information, starts, pinned, made.settings, run.settings.cancellation);
-  const int first = work.graph.candidates.given - static_cast<int>(pinned.size());
-  if (first < 1)
-    throw InputError(
-        "no_fly_zones, flight_zones and regions leave none of the places where the tour of the "
-        "plan "
-        "before could begin: let go to plan it, or set start");
-  std::iota(work.pinned.begin(), work.pinned.end(), first);
-}
-
 // run:scan_graph{prior =, vehicle =, region =, allowed =, starts =, ...}
 int scan_graph_of_run(lua_State* state) {
   MissionRun& run = run_of(state);
@@ -502,7 +347,8 @@ int scan_graph_of_run(lua_State* state) {
     const std::vector<Viewpoint> pinned(starts.begin() + static_cast<std::ptrdiff_t>(first_pinned),
                                         starts.end());
     starts.resize(first_pinned);
-    change_graph(*like->work, made, starts, pinned, run);
+    change_graph(*like->work, *work, *made.space, *made.sight, starts, pinned, settings,
+                 run.settings.cancellation);
   } else {
     begin_planning(run);
     make_graph(*work, *made.space, *made.sight, starts, settings, run);

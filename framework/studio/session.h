@@ -61,8 +61,9 @@ class StudioSession {
   void received(PageSocket& page, std::string_view text);
   void closed(PageSocket& page);
   std::shared_ptr<const std::string> blob(std::string_view name) {
-    const auto surface = surfaces_.find(name);
-    return surface ? surface : pictures_.find(name);
+    for (BlobStore* store : {&surfaces_, &backdrops_})
+      if (auto found = store->find(name)) return found;
+    return pictures_.find(name);
   }
 
   // Workers.
@@ -251,6 +252,7 @@ class StudioSession {
   std::string world_;                     // the last one told
   std::vector<std::string> world_blobs_;  // that it names
   BlobStore surfaces_{std::size_t{512} << 20}, pictures_{std::size_t{64} << 20};
+  BlobStore backdrops_{1};  // the one that was told last alone, for pages that come later
   // The solving process answers what is asked about its plans.
   std::map<WorkerRole, ErrandLine> errand_lines_{{WorkerRole::errands, {}},
                                                  {WorkerRole::solver, {}}};

@@ -193,7 +193,7 @@ bool StudioSession::tell_backdrop(const Errand& errand, Frame& frame) {
   Value message = Value::map();
   message.set("type", "backdrop");
   if (done)
-    message.set("picture", surfaces_.put(std::move(frame.parts[1])));
+    message.set("picture", backdrops_.put(std::move(frame.parts[1])));
   else
     message.set("why", frame.header.at("why"));
   std::string text = to_json(message, -1);

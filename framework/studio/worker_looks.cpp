@@ -197,14 +197,17 @@ WorkerLooks::Kept WorkerLooks::kept_in(const std::string& folder) const {
                                   [&](const Kept& one) { return one.folder == folder; });
   if (found == kept_.end())
     throw InputError(
-        "the map of this plan is no longer held: it is held of the last plans, and of a large map "
-        "of the last one alone; edit the mission to plan it again");
+        "the map of this plan is no longer held: it is held of the last plans, and of a scan with "
+        "a "
+        "large map of the last one alone; edit the mission to plan it again");
   return *found;
 }
 
-Frame WorkerLooks::answer(const Frame& question) const {
+Frame WorkerLooks::answer(const Frame& question) {
   const Kept kept = kept_in(question.header.at("folder").as_text());
-  if (kept.episode) return episode_answer(question, *kept.episode);
+  if (asked_ && asked_ != kept.episode) asked_->forget();
+  asked_ = kept.episode;
+  if (asked_) return episode_answer(question, *asked_);
   const std::vector<KeptTour>& tours = kept.tours;
   const std::string& what = question.header.at("do").as_text();
   if (what == "voxel") return voxel_answer(question, tours, threads_);

@@ -44,7 +44,7 @@ class WorkerLooks {
   };
 
   void work();
-  Frame answer(const Frame& question) const;
+  Frame answer(const Frame& question);
   Kept kept_in(const std::string& folder) const;
   void add(Kept one);
 
@@ -56,6 +56,7 @@ class WorkerLooks {
   std::deque<Kept> kept_;                // the newest last
   std::shared_ptr<EpisodeReplay> live_;  // that was begun last
   bool ended_ = false;
+  std::shared_ptr<EpisodeReplay> asked_;  // last, of the own thread: it alone holds maps
   std::thread thread_;
 };
 

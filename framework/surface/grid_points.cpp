@@ -27,16 +27,16 @@ void check_reconstruction(const ReconstructionSettings& s) {
   }
 }
 
-void sort_by_key(std::vector<PlacedPoint>& placed) {
+void sort_by_key(std::vector<KeyedPoint>& placed) {
   std::sort(placed.begin(), placed.end(),
-            [](const PlacedPoint& a, const PlacedPoint& b) { return a.key < b.key; });
+            [](const KeyedPoint& a, const KeyedPoint& b) { return a.key < b.key; });
 }
 
-GridPoints in_order(std::vector<PlacedPoint> placed) {
+GridPoints in_order(std::vector<KeyedPoint> placed) {
   sort_by_key(placed);
   GridPoints points;
   points.reserve(placed.size());
-  for (const PlacedPoint& p : placed) points.push_back(p.point);
+  for (const KeyedPoint& p : placed) points.push_back(p.point);
   return points;
 }
 

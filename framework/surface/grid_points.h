@@ -43,13 +43,13 @@ struct PointSum {
   Eigen::Vector3f mean() const { return (sum / static_cast<double>(count)).cast<float>(); }
 };
 
-struct PlacedPoint {
+struct KeyedPoint {
   GridKey key;
   Eigen::Vector3f point;
 };
 
-void sort_by_key(std::vector<PlacedPoint>& placed);
-GridPoints in_order(std::vector<PlacedPoint> placed);
+void sort_by_key(std::vector<KeyedPoint>& placed);
+GridPoints in_order(std::vector<KeyedPoint> placed);
 
 // InputError for settings that make no sense.
 void check_reconstruction(const ReconstructionSettings& settings);

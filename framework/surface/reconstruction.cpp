@@ -156,7 +156,7 @@ void Reconstruction::add(const MeshScene& scene, std::span<const Pose> cameras,
 
 GridPoints Reconstruction::points(int threads) const {
   const int least = parts_->settings.images;
-  std::vector<std::vector<PlacedPoint>> of_shard(kShards);
+  std::vector<std::vector<KeyedPoint>> of_shard(kShards);
   parallel_for(kShards, threads, [&](std::size_t shard) {
     for (const auto& slot : parts_->means[shard].slots()) {
       if (slot.key == kNoPlace) continue;
@@ -166,7 +166,7 @@ GridPoints Reconstruction::points(int threads) const {
       }
     }
   });
-  std::vector<PlacedPoint> placed;
+  std::vector<KeyedPoint> placed;
   for (const auto& part : of_shard) placed.insert(placed.end(), part.begin(), part.end());
   return in_order(std::move(placed));
 }

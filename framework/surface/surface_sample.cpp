@@ -213,7 +213,7 @@ SurfaceSample::SurfaceSample(const TriangleMesh& mesh, const ReconstructionSetti
       }
     }
   }
-  std::vector<PlacedPoint> placed;
+  std::vector<KeyedPoint> placed;
   placed.reserve(all.size());
   for (const auto& slot : all.slots()) {
     if (slot.key != kNoPlace) placed.push_back({slot.key, slot.entry.mean()});
@@ -221,7 +221,7 @@ SurfaceSample::SurfaceSample(const TriangleMesh& mesh, const ReconstructionSetti
   sort_by_key(placed);
   GridPoints points;
   points.reserve(placed.size());
-  for (const PlacedPoint& p : placed) {
+  for (const KeyedPoint& p : placed) {
     points.push_back(p.point);
     if (!settings.region.contains(p.point.cast<double>())) continue;
     index->inside.push_back(p.point);

@@ -145,8 +145,7 @@ void tell(const Raster& raster) {
   std::printf("%s\n", told.dump().c_str());
 }
 
-// ---- pictures
-// -----------------------------------------------------------------------------------
+// -- pictures ------------------------------------------------------------------------------------
 
 constexpr double kMostRead = 0x1p30;                  // pixels of the level that is read
 constexpr double kDarkest = 0.02, kBrightest = 0.98;  // of all values, where they are no bytes
@@ -271,12 +270,18 @@ std::array<float, 2> ends_of(const Shown& shown, const PictureWindow& window) {
   return {low, high > low ? high : low + 1};
 }
 
-// m along x and y of its coordinates.
-double metres_per_unit(const Raster& raster) {
+// m along x and y of its coordinates, where `y` is one of them.
+std::array<double, 2> metres_per_unit(const Raster& raster, double y) {
   const OGRSpatialReferenceH system = GDALGetSpatialRef(raster.set);
-  constexpr double kDegree = 111320;  // m, of latitude
-  if (!system) return 1;
-  return OSRIsGeographic(system) ? kDegree : OSRGetLinearUnits(system, nullptr);
+  if (!system) return {1, 1};
+  if (OSRIsGeographic(system)) {
+    constexpr double kDegree = 111320;  // m, of latitude
+    const double radian = OSRGetAngularUnits(system, nullptr);
+    const double unit = kDegree * radian * 180 / M_PI;
+    return {unit * std::cos(y * radian), unit};
+  }
+  const double unit = OSRGetLinearUnits(system, nullptr);
+  return {unit, unit};
 }
 
 // Rows of heights in the light of the north-west, 45 degrees high; one row more above and below.
@@ -285,12 +290,15 @@ class HillLight {
   HillLight(const Raster& raster, const PictureWindow& window) {
     std::array<double, 6> t{};
     GDALGetGeoTransform(raster.set, t.data());
-    const double unit = metres_per_unit(raster);
-    const double right = unit * window.width / window.columns;
-    const double down = unit * window.height / window.rows;
+    const double right = static_cast<double>(window.width) / window.columns;
+    const double down = static_cast<double>(window.height) / window.rows;
+    const auto [x_unit, y_unit] =
+        metres_per_unit(raster, t[3] + t[4] * (window.column + 0.5 * window.width) +
+                                    t[5] * (window.row + 0.5 * window.height));
     // The rows of the inverse of the pixels' matrix, transposed: from slopes along columns and rows
     // to slopes along x and y.
-    const double a = t[1] * right, b = t[2] * down, c = t[4] * right, d = t[5] * down;
+    const double a = t[1] * x_unit * right, b = t[2] * x_unit * down;
+    const double c = t[4] * y_unit * right, d = t[5] * y_unit * down;
     const double determinant = a * d - b * c;
     if (determinant != 0)
       to_x_ = {d / determinant, -c / determinant}, to_y_ = {-b / determinant, a / determinant};

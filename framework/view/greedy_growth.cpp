@@ -34,7 +34,7 @@ struct Candidate {
 
 class Round {
  public:
-  Round(std::span<WorkingTour* const> tours, std::vector<double>& known, const Growth& growth,
+  Round(std::span<WorkingTour* const> tours, std::vector<double>& known, const GreedyGrowth& growth,
         TourWork& work)
       : tours_(tours),
         known_(known),
@@ -133,7 +133,7 @@ class Round {
 
   std::span<WorkingTour* const> tours_;
   std::vector<double>& known_;
-  const Growth& growth_;
+  const GreedyGrowth& growth_;
   TourWork& work_;
   std::vector<Places> places_;  // per tour
   std::vector<int> tour_for_;   // per view, of this step
@@ -148,14 +148,14 @@ std::vector<double> gains_alone(const TourProblem& problem) {
   return gains;
 }
 
-void grow(std::span<WorkingTour* const> tours, std::vector<double>& known, const Growth& growth,
-          TourWork& work, std::int64_t iterations) {
+void grow(std::span<WorkingTour* const> tours, std::vector<double>& known,
+          const GreedyGrowth& growth, TourWork& work, std::int64_t iterations) {
   Round round(tours, known, growth, work);
   while (round.step(iterations)) {
   }
 }
 
-void grow(WorkingTour& tour, std::vector<double>& known, const Growth& growth, TourWork& work,
+void grow(WorkingTour& tour, std::vector<double>& known, const GreedyGrowth& growth, TourWork& work,
           std::int64_t iterations) {
   WorkingTour* const alone[] = {&tour};
   grow(alone, known, growth, work, iterations);

@@ -11,7 +11,7 @@
 
 namespace lapwing {
 
-struct Growth {
+struct GreedyGrowth {
   bool by_ratio = false;  // gain per second that the view adds, instead of gain
   // By submodularity a gain only shrinks while the tour grows: only views whose last known gain
   // could still win are evaluated again (thesis 2.4). Without it all are, in every round.
@@ -27,10 +27,10 @@ std::vector<double> gains_alone(const TourProblem& problem);
 
 // Grows until nothing fits that brings anything, or the work ends. `known`: per view a gain that it
 // cannot exceed now; updated.
-void grow(WorkingTour& tour, std::vector<double>& known, const Growth& growth, TourWork& work,
+void grow(WorkingTour& tour, std::vector<double>& known, const GreedyGrowth& growth, TourWork& work,
           std::int64_t iterations = 0);
 // Likewise of several tours of one team: a view goes to the tour that it lengthens least.
-void grow(std::span<WorkingTour* const> tours, std::vector<double>& known, const Growth& growth,
-          TourWork& work, std::int64_t iterations = 0);
+void grow(std::span<WorkingTour* const> tours, std::vector<double>& known,
+          const GreedyGrowth& growth, TourWork& work, std::int64_t iterations = 0);
 
 }  // namespace lapwing

@@ -65,7 +65,7 @@ void check_legs(const TourDefinition& d, std::size_t n, Diagnostics& errors) {
 
 void check_motions(const TourDefinition& d, int n, Diagnostics& errors) {
   for (std::size_t i = 0; i < d.motions.size(); ++i) {
-    const Motion& motion = d.motions[i];
+    const TourMotion& motion = d.motions[i];
     const std::string which = "motions[" + std::to_string(i) + "]";
     check_view(motion.a, n, which, errors);
     check_view(motion.b, n, which, errors);
@@ -192,7 +192,7 @@ TourProblem::TourProblem(TourDefinition d) {
   if (each_once()) return;
   ways_ = std::make_shared<Ways>(n);
   std::vector<std::vector<std::pair<int, double>>> of(n);
-  for (const Motion& motion : d.motions) {
+  for (const TourMotion& motion : d.motions) {
     if (motion.a == motion.b) continue;
     const double leg = motion.seconds + (stops[motion.a] + stops[motion.b]) / 2;
     of[motion.a].push_back({motion.b, leg});

@@ -24,8 +24,8 @@
 
 namespace lapwing {
 
-// Both ways.
-struct Motion {
+// Between two views, both ways.
+struct TourMotion {
   int a = 0, b = 0;
   double seconds = 0;
 };
@@ -33,7 +33,7 @@ struct Motion {
 struct TourDefinition {
   std::shared_ptr<const ViewScore> score;  // one view each
   std::vector<double> view_seconds;        // per view; one entry serves all
-  std::vector<Motion> motions;             // of several between two views the quickest counts
+  std::vector<TourMotion> motions;         // of several between two views the quickest counts
   // Instead of motions: row by row, symmetric, every view next to every other. Then legs are as
   // stated, no other view is passed on the way, and each view is visited at most once.
   std::vector<double> legs;

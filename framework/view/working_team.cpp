@@ -91,7 +91,7 @@ std::vector<WorkingTour*> WorkingTeam::pointers() {
   return all;
 }
 
-void WorkingTeam::grow_all(std::vector<double>& known, const Growth& growth, TourWork& work,
+void WorkingTeam::grow_all(std::vector<double>& known, const GreedyGrowth& growth, TourWork& work,
                            std::int64_t iterations) {
   grow(pointers(), known, growth, work, iterations);
 }

@@ -33,7 +33,7 @@ class WorkingTeam {
   bool within_limits() const;  // of images
 
   // Puts in what fits anywhere, as `grow` of tours does.
-  void grow_all(std::vector<double>& known, const Growth& growth, TourWork& work,
+  void grow_all(std::vector<double>& known, const GreedyGrowth& growth, TourWork& work,
                 std::int64_t iterations = 0);
   // Each tour in a shorter order, and views and ends of tours from one to another where all tours
   // together become shorter and each stays within its budget and image limit: a view moved

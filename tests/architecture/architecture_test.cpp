@@ -223,6 +223,18 @@ TEST(Rules, TheMapSaysWhatTheRulesSay) {
   EXPECT_EQ(count("| `app`", "| app"), 3u);
 }
 
+TEST(Rules, AClassHasOneHeader) {
+  const auto count = [](const std::string& one, const std::string& other) {
+    return check_tree({{"framework/view/a.h", one}, {"framework/verify/b.h", other}}).size();
+  };
+  const std::string motion = "namespace lapwing {\nstruct Motion {\n";
+  EXPECT_EQ(count(motion, motion), 1u);
+  EXPECT_EQ(count(motion, "namespace lapwing {\nclass Motion final : public A {\n"), 1u);
+  EXPECT_EQ(count(motion, "namespace lapwing {\nclass Motion;\n"), 0u);
+  EXPECT_EQ(count(motion, "namespace lapwing::verify {\nclass Motion {\n"), 0u);
+  EXPECT_EQ(count(motion, "namespace lapwing {\nclass Other {\n  struct Motion {\n"), 0u);
+}
+
 TEST(Rules, APluginHasOneName) {
   const std::string folder = "plugins/cost_terms/keep_low/";
   const std::vector<SourceFile> good{

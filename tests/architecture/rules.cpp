@@ -398,8 +398,29 @@ void check_plugin(const std::string& folder, const std::map<std::string, std::st
 
 }  // namespace
 
+// Two classes of one name in one namespace, each complete in a header of its own: programs that
+// link both are undefined, though every source compiles.
+void check_classes(const std::vector<SourceFile>& files, Violations& found) {
+  static const std::regex kSpace(R"(namespace ([\w:]+) \{.*)");
+  static const std::regex kClass(R"((?:struct|class) (\w+)(?: final)?(?: :[^;]*)?(?: \{.*)?)");
+  std::map<std::string, std::string> headers;  // by class
+  for (const SourceFile& file : files) {
+    if (!file.path.starts_with("framework/") || !file.path.ends_with(".h")) continue;
+    std::string space;
+    for (const std::string& line : split(file.text, '\n')) {
+      std::smatch match;
+      if (std::regex_match(line, match, kSpace)) space = match[1];
+      if (!std::regex_match(line, match, kClass)) continue;
+      const auto [first, is_new] = headers.emplace(space + "::" + match[1].str(), file.path);
+      if (!is_new && first->second != file.path)
+        found.push_back(first->first + " is declared by " + first->second + " and by " + file.path);
+    }
+  }
+}
+
 Violations check_tree(const std::vector<SourceFile>& files) {
   Violations found;
+  check_classes(files, found);
   std::map<std::string, std::string> texts;
   Names plugin_folders;
   std::map<std::string, Names> users;  // of single-source headers

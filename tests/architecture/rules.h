@@ -24,7 +24,8 @@ Violations check_third_party(const SourceFile& file);
 Violations check_style(const SourceFile& file);
 // The line by which a source states its licence.
 Violations check_licence(const SourceFile& file);
-// Rules over several files: one name per plugin, headers that one source alone may include.
+// Rules over several files: one name per plugin, one header per class of the framework, headers
+// that one source alone may include.
 Violations check_tree(const std::vector<SourceFile>& files);
 // The kernel's map, framework/README.md: it lists every existing room, and what it says that a room
 // may include is what the rules say (rooms that do not exist yet left out).

@@ -216,6 +216,23 @@ TEST_F(BackdropRasters, HeightsAreHillsInTheLight) {
   EXPECT_EQ(colour(picture, 39, 5)[3], 0) << "no data";
 }
 
+// A degree of longitude has half as many metres at 60 degrees north.
+TEST_F(BackdropRasters, HillsInDegreesAreAsSteepAsTheyAre) {
+  const GeodeticOrigin north{60, 4.3571, 40, HeightOf::ellipsoid, 0};
+  MadeRaster made;
+  made.system = 4326;
+  made.geographic = true;
+  made.pixel = 1e-5;
+  made.left = 4.3571 - 20e-5;
+  made.upper = 60 + 20e-5;
+  // Half a metre up for each metre to the east.
+  made.height_at = [&](double x, double) {
+    return static_cast<float>(0.5 * (x - made.left) * kDegree * kEarth / 2);
+  };
+  const PlacedPicture picture = placed_picture(written(tiff_bytes(made)), north, kAround);
+  EXPECT_NEAR(colour(picture, 20, 20)[0], 255 * (0.25 + std::sqrt(0.5)) / std::sqrt(1.25), 1.5);
+}
+
 TEST_F(BackdropRasters, WhatIsWrongIsSaid) {
   MadePicture made = marked(3, 4);
   made.system = 0;

@@ -2,6 +2,7 @@
 // The program with missions of other kinds than films: what a page is told of them.
 #pragma once
 
+#include "framework/map/map_file.h"
 #include "tests/studio/program_fixture.h"
 
 namespace lapwing {
@@ -33,6 +34,43 @@ class StudioKinds : public StudioProgram {
       return m.at("type") == Value("picture") || m.at("type") == Value("failed");
     });
   }
+};
+
+// A page that asks about the map of one plan; all is compared with the map that a run writes.
+class StudioAsked : public StudioKinds {
+ protected:
+  // The answer of the first revision.
+  Value open_page(const std::vector<std::string>& options) {
+    address_ = std::make_unique<StudioAddress>(serve(options));
+    page_ = std::make_unique<PageClient>(*address_, "a");
+    const auto [world, answer] = told(*page_);
+    world_ = world;
+    return answer;
+  }
+  Value ask(const std::string& members) {
+    page_->send_text("{\"id\": \"q\", " + members + "}");
+    return page_->until([](const Value& m) { return m.find("id") && m.at("id") == Value("q"); });
+  }
+  std::string why(const std::string& members) {
+    const Value answer = ask(members);
+    EXPECT_EQ(answer.at("type"), Value("failed")) << to_json(answer);
+    return answer.find("why") ? answer.at("why").as_text() : "";
+  }
+  // What the map of the run says of a voxel; nothing where it is unknown.
+  std::optional<VoxelLeaf> written(const VoxelKey& key) const {
+    for (const VoxelLeaf& leaf : map_.leaves) {
+      const int size = 1 << leaf.level;
+      bool in = true;
+      for (int i = 0; i < 3; ++i) in = in && key[i] >= leaf.key[i] && key[i] < leaf.key[i] + size;
+      if (in) return leaf;
+    }
+    return std::nullopt;
+  }
+
+  std::unique_ptr<StudioAddress> address_;
+  std::unique_ptr<PageClient> page_;
+  Value world_;
+  MapFile map_;  // of the run
 };
 
 }  // namespace lapwing

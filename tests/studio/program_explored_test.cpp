@@ -13,22 +13,11 @@ namespace {
 
 using testing::HasSubstr;
 
-class StudioExplored : public StudioKinds {
+class StudioExplored : public StudioAsked {
  protected:
   void open(const std::vector<std::string>& options) {
     use("explore/city.lua");
-    address_ = std::make_unique<StudioAddress>(serve(options));
-    page_ = std::make_unique<PageClient>(*address_, "a");
-    world_ = told(*page_).first;
-  }
-  Value ask(const std::string& members) {
-    page_->send_text("{\"id\": \"q\", " + members + "}");
-    return page_->until([](const Value& m) { return m.find("id") && m.at("id") == Value("q"); });
-  }
-  std::string why(const std::string& members) {
-    const Value answer = ask(members);
-    EXPECT_EQ(answer.at("type"), Value("failed")) << to_json(answer);
-    return answer.find("why") ? answer.at("why").as_text() : "";
+    open_page(options);
   }
   Value slice(const std::string& axis, double at, int image, const std::string& more = "") {
     const Value answer = ask(R"("type": "slice", "axis": ")" + axis + R"(", "at": )" +
@@ -43,23 +32,8 @@ class StudioExplored : public StudioKinds {
     EXPECT_EQ(answer.at("type"), Value("voxel")) << to_json(answer);
     return answer;
   }
-  // What the map of the run says of a voxel; nothing where it is unknown.
-  std::optional<VoxelLeaf> written(const VoxelKey& key) const {
-    for (const VoxelLeaf& leaf : map_.leaves) {
-      const int size = 1 << leaf.level;
-      bool in = true;
-      for (int i = 0; i < 3; ++i) in = in && key[i] >= leaf.key[i] && key[i] < leaf.key[i] + size;
-      if (in) return leaf;
-    }
-    return std::nullopt;
-  }
   void compare_slice();
   void compare_voxels();
-
-  std::unique_ptr<StudioAddress> address_;
-  std::unique_ptr<PageClient> page_;
-  Value world_;
-  MapFile map_;
 };
 
 // Every cell of a slice at the end.

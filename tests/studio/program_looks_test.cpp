@@ -20,40 +20,17 @@ const std::vector<std::string> kOptions{
     "--set",    "map={type: brick, observations: true}",
     "--set",    "forbidden=[{position: [0, 25, 30], within: 15}]"};
 
-class StudioLooks : public StudioKinds {
+class StudioLooks : public StudioAsked {
  protected:
   void open() {
     use("scan/church.lua");
-    address_ = std::make_unique<StudioAddress>(serve(kOptions));
-    page_ = std::make_unique<PageClient>(*address_, "a");
-    const auto [world, answer] = told(*page_);
-    world_ = world;
-    revision_ = answer.at("revision").as_integer();
-  }
-  Value ask(const std::string& members) {
-    page_->send_text("{\"id\": \"q\", " + members + "}");
-    return page_->until([](const Value& m) { return m.find("id") && m.at("id") == Value("q"); });
-  }
-  std::string why(const std::string& members) {
-    const Value answer = ask(members);
-    EXPECT_EQ(answer.at("type"), Value("failed")) << to_json(answer);
-    return answer.find("why") ? answer.at("why").as_text() : "";
+    revision_ = open_page(kOptions).at("revision").as_integer();
   }
   void fly() {
     std::vector<std::string> words{"run", script_.string(), "-o", "flown"};
     words.insert(words.end(), kOptions.begin(), kOptions.end());
     EXPECT_EQ(run(words), 0) << errors_;
     map_ = read_map_file(folder_ / "flown/map.ot");
-  }
-  // What the map that the run wrote says of a voxel; nothing where it is unknown.
-  std::optional<float> written(const VoxelKey& key) const {
-    for (const VoxelLeaf& leaf : map_.leaves) {
-      const int size = 1 << leaf.level;
-      bool in = true;
-      for (int i = 0; i < 3; ++i) in = in && key[i] >= leaf.key[i] && key[i] < leaf.key[i] + size;
-      if (in) return leaf.log_odds;
-    }
-    return std::nullopt;
   }
   static VoxelKey key_of(const Value& voxel) {
     const Value::List& key = voxel.at("key").as_list();
@@ -78,11 +55,7 @@ class StudioLooks : public StudioKinds {
   void ask_views();
   void ask_while_planning();
 
-  std::unique_ptr<StudioAddress> address_;
-  std::unique_ptr<PageClient> page_;
-  Value world_;
   std::int64_t revision_ = 0;
-  MapFile map_;
 };
 
 // A voxel is what the map of the run says, seen by images of the tour.
@@ -97,7 +70,7 @@ void StudioLooks::ask_voxels() {
     EXPECT_EQ(voxel.at("state"), Value("occupied"));
     const auto odds = written(key_of(voxel));
     ASSERT_TRUE(odds);
-    EXPECT_EQ(voxel.at("log_odds").as_number(), *odds);
+    EXPECT_EQ(voxel.at("log_odds").as_number(), odds->log_odds);
     EXPECT_GT(voxel.at("observations").as_integer(), 0);
     const Value::List& middle = voxel.at("middle").as_list();
     double sum = 0;
@@ -159,7 +132,7 @@ void StudioLooks::ask_slices() {
       ASSERT_EQ(odds.has_value(), state != 0);
       if (odds)
         EXPECT_NEAR(static_cast<unsigned char>(cells[12 + place]),
-                    255 * (*odds - low) / (high - low), 0.51);
+                    255 * (odds->log_odds - low) / (high - low), 0.51);
     }
   const Value& told_counts = slice.at("counts");
   EXPECT_EQ(told_counts.at("unknown"), Value(counts[0]));

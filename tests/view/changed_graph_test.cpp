@@ -44,23 +44,11 @@ class Zoned final : public FreeSpace {
 class ChangedGraphs : public ::testing::Test {
  protected:
   ChangedGraphs() {
-    settings_.candidates.region = was_;
-    settings_.candidates.allowed = AlignedBox3d(Vector3d(-10, -10, 0), Vector3d(10, 10, 10));
-    settings_.candidates.half = {0.5, 0.5, 0.25};
-    settings_.candidates.most = 40;
-    settings_.motions.allowed = settings_.candidates.allowed;
-    settings_.motions.half = settings_.candidates.half;
-    settings_.coarse_across = 20;
-    settings_.threads = 2;
     before_ = make_scan_graph(*space_, seeing(was_), Near(), {{{-5, 0, 5}, 0, 0}}, settings_);
   }
 
   VisibleVoxels seeing(const AlignedBox3d& region) const {
-    SightSettings sight;
-    sight.pinhole = {40, 30, 23, 23, 19.5, 14.5};
-    sight.range = 30;
-    sight.region = region;
-    return {map_, wall_face(), sight};
+    return {map_, wall_face(), small_sight(region)};
   }
   ScanGraph changed(const AlignedBox3d& region, const FreeSpace& space,
                     const std::vector<Viewpoint>& starts = {},
@@ -83,7 +71,7 @@ class ChangedGraphs : public ::testing::Test {
   std::unique_ptr<FreeSpace> space_ =
       free_in_both(free_space_of(std::shared_ptr<const Map>(map_)),
                    with_room(free_space_of(std::shared_ptr<const MeshScene>(wall_face())), 0.5));
-  ScanGraphSettings settings_;
+  ScanGraphSettings settings_ = small_graph(was_);
   ScanGraph before_;
   std::vector<int> pinned_before_;
 };

@@ -35,22 +35,7 @@ struct World {
   ScanGraphSettings settings;
 
   explicit World(const AlignedBox3d& region = {Vector3d(4, -4, 0), Vector3d(6, 4, 9)})
-      : visible(map, wall_face(), sight(region)) {
-    settings.candidates.region = region;
-    settings.candidates.allowed = AlignedBox3d(Vector3d(-10, -10, 0), Vector3d(10, 10, 10));
-    settings.candidates.half = {0.5, 0.5, 0.25};
-    settings.candidates.most = 40;
-    settings.motions.allowed = settings.candidates.allowed;
-    settings.motions.half = settings.candidates.half;
-    settings.coarse_across = 20;
-  }
-  static SightSettings sight(const AlignedBox3d& region) {
-    SightSettings s;
-    s.pinhole = {40, 30, 23, 23, 19.5, 14.5};
-    s.range = 30;
-    s.region = region;
-    return s;
-  }
+      : visible(map, wall_face(), small_sight(region)), settings(small_graph(region)) {}
   ScanGraph graph(int threads = 2, const CancellationToken* cancellation = nullptr) {
     settings.threads = threads;
     return make_scan_graph(*space, visible, Halves(), {{{-5, 0, 5}, 0, 0}}, settings, cancellation);
@@ -59,7 +44,7 @@ struct World {
 
 TEST(ScanGraph, VoxelsCountWhatTheirRegionWeighs) {
   World world;
-  SightSettings sight = World::sight({Vector3d(4, -4, 0), Vector3d(6, 4, 9)});
+  SightSettings sight = small_sight({Vector3d(4, -4, 0), Vector3d(6, 4, 9)});
   sight.region =
       InterestRegion(std::vector{RegionPrism{.name = "left",
                                              .outline = {{4, -4}, {6, -4}, {6, -1}, {4, -1}},

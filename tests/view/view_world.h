@@ -3,6 +3,7 @@
 #pragma once
 
 #include "framework/geometry/mesh_builder.h"
+#include "framework/view/scan_graph.h"
 #include "tests/map/small_map.h"
 
 namespace lapwing {
@@ -30,6 +31,29 @@ inline std::shared_ptr<MeshScene> wall_face(double moved = 0) {
   mesh.vertices = {{x, -4, 0}, {x, 4, 0}, {x, 4, 10}, {x, -4, 10}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   return std::make_shared<MeshScene>(mesh);
+}
+
+// Of a small camera that looks at a part of the wall.
+inline SightSettings small_sight(const Eigen::AlignedBox3d& region) {
+  SightSettings sight;
+  sight.pinhole = {40, 30, 23, 23, 19.5, 14.5};
+  sight.range = 30;
+  sight.region = region;
+  return sight;
+}
+
+// Of a graph of 40 views in the room.
+inline ScanGraphSettings small_graph(const Eigen::AlignedBox3d& region) {
+  ScanGraphSettings settings;
+  settings.candidates.region = region;
+  settings.candidates.allowed = {Eigen::Vector3d(-10, -10, 0), Eigen::Vector3d(10, 10, 10)};
+  settings.candidates.half = {0.5, 0.5, 0.25};
+  settings.candidates.most = 40;
+  settings.motions.allowed = settings.candidates.allowed;
+  settings.motions.half = settings.candidates.half;
+  settings.coarse_across = 20;
+  settings.threads = 2;
+  return settings;
 }
 
 }  // namespace lapwing

@@ -88,7 +88,7 @@ class Annealing {
   }
 
   // Puts in what fits, shortens, and again.
-  void fill(WorkingTour& tour, const Growth& growth) {
+  void fill(WorkingTour& tour, const GreedyGrowth& growth) {
     grow(tour, known_.gains, growth, work_, iterations_);
     while (tour.shorten()) {
       const int before = tour.images();

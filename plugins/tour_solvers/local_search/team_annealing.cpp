@@ -66,7 +66,7 @@ class TeamAnnealing {
     return std::max(own, work_.share_used(best_.evaluations, best_.iterations));
   }
 
-  void fill(WorkingTeam& team, const Growth& growth) {
+  void fill(WorkingTeam& team, const GreedyGrowth& growth) {
     team.grow_all(known_.gains, growth, work_, best_.iterations);
     while (team.shorten()) {
       const int before = team.images();

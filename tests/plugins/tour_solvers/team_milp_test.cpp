@@ -70,7 +70,7 @@ TEST(TeamMilp, FindsTheBestToursOfIndependentViews) {
     if (seed % 5 == 0) {
       tours.back().start = 3;
       if (options.loop) tours.back().end = 3;
-      for (Motion& motion : tours.back().motions) motion.seconds *= 1.25;
+      for (TourMotion& motion : tours.back().motions) motion.seconds *= 1.25;
     }
     const TeamWorld world = world_of("seed " + std::to_string(seed), std::move(tours));
     expect_best(world);

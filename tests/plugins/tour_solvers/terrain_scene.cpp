@@ -119,8 +119,8 @@ std::vector<View> random_views(Random& random, const Terrain& terrain,
   return views;
 }
 
-std::vector<Motion> motions_between(const std::vector<View>& views, int neighbours) {
-  std::vector<Motion> motions;
+std::vector<TourMotion> motions_between(const std::vector<View>& views, int neighbours) {
+  std::vector<TourMotion> motions;
   for (int a = 0; a < static_cast<int>(views.size()); ++a) {
     std::vector<std::pair<double, int>> near;
     for (int b = 0; b < static_cast<int>(views.size()); ++b) {

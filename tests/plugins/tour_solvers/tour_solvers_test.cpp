@@ -67,7 +67,7 @@ TEST(Greedy, LazyEvaluationSavesNineTenths) {
 
 TEST(TourSolvers, AllSayWhatWasReachable) {
   TourDefinition apart = random_tour(9, {.loop = false});
-  std::erase_if(apart.motions, [](const Motion& m) { return m.a == 9 || m.b == 9; });
+  std::erase_if(apart.motions, [](const TourMotion& m) { return m.a == 9 || m.b == 9; });
   TourDefinition poor = random_tour(10, {});
   poor.budget = 0;
   TourDefinition dull = random_tour(11, {.legs = true});
