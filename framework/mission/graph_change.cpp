@@ -80,9 +80,8 @@ void change_graph(const ScanWork& before, ScanWork& work, const FreeSpace& space
   std::unique_ptr<FreeSpace> rules;
   if (!work.rules->empty())
     rules = ruled(std::make_unique<OpenSpace>(), *work.rules, work.prior->mapping.map);
-  work.graph =
-      changed_graph(before.graph, was, before.pinned, space, rules.get(), sight,
-                    *work.information, starts, pinned, settings, cancellation);
+  work.graph = changed_graph(before.graph, was, before.pinned, space, rules.get(), sight,
+                             *work.information, starts, pinned, settings, cancellation);
   const int first = work.graph.candidates.given - static_cast<int>(pinned.size());
   if (first < 1)
     throw InputError(
