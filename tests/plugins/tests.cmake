@@ -60,7 +60,8 @@ add_dependencies(test_explore lapwing_map_brick)
 get_filename_component(learned ${PROJECT_SOURCE_DIR}/plugins/utilities/learned ABSOLUTE)
 target_sources(test_utilities PRIVATE ${learned}/network.cpp ${learned}/kernels.cpp
   ${learned}/backpropagation.cpp ${learned}/ray_network.cpp ${learned}/grid_trainee.cpp
-  ${learned}/ray_trainee.cpp ${learned}/model_file.cpp ${learned}/fit.cpp)
+  ${learned}/ray_trainee.cpp ${learned}/without_torch.cpp ${learned}/model_file.cpp
+  ${learned}/fit.cpp)
 foreach(utility frontier average_entropy proximity_count oracle learned)
   add_dependencies(test_utilities lapwing_utility_${utility})
 endforeach()
@@ -71,19 +72,15 @@ add_test(NAME orienteering_long
 set_tests_properties(orienteering_long PROPERTIES LABELS long
                                                   ENVIRONMENT "LAPWING_LONG=1")
 
-# The learned utility's network against libtorch: one source, which takes longer than all others.
+# The networks of the learned utilities against libtorch: one source, which takes longer than all
+# others.
 if(LAPWING_LEARN)
-  find_library(torch_library torch REQUIRED)
-  find_library(torch_cpu_library torch_cpu REQUIRED)
-  find_library(c10_library c10 REQUIRED)
-  find_path(torch_headers torch/torch.h PATH_SUFFIXES torch/csrc/api/include REQUIRED)
   add_executable(test_learned_torch ${CMAKE_CURRENT_LIST_DIR}/learned_torch/learned_torch_test.cpp
     ${learned}/network.cpp ${learned}/kernels.cpp ${learned}/backpropagation.cpp
-    ${learned}/ray_network.cpp
-    ${learned}/model_file.cpp)
-  target_include_directories(test_learned_torch SYSTEM PRIVATE ${torch_headers})
+    ${learned}/ray_network.cpp ${learned}/grid_trainee.cpp ${learned}/ray_trainee.cpp
+    ${learned}/torch_trainee.cpp ${learned}/model_file.cpp ${learned}/fit.cpp)
   target_compile_definitions(test_learned_torch PRIVATE ${test_definitions})
   target_link_libraries(test_learned_torch PRIVATE lapwing GTest::gtest GTest::gtest_main
-    ${torch_library} ${torch_cpu_library} ${c10_library})
+    lapwing_torch)
   add_test(NAME learned_torch COMMAND test_learned_torch)
 endif()

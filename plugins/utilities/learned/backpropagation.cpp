@@ -12,7 +12,6 @@ namespace lapwing::learned {
 namespace {
 
 constexpr float kVariance = 1e-5f;  // added to variances
-constexpr double kMomentum = 0.05;  // of a batch in the running statistics
 
 // A number from 0 to 1 for one place of one batch.
 double place_uniform(std::uint64_t seed, std::uint64_t place) {
@@ -23,6 +22,12 @@ double place_uniform(std::uint64_t seed, std::uint64_t place) {
 }
 
 }  // namespace
+
+double dropout_factor(const BatchOptions& options, int layer, std::size_t number) {
+  const std::uint64_t place = number + (static_cast<std::uint64_t>(layer) << 40);
+  const bool stays = options.dropout <= 0 || place_uniform(options.seed, place) >= options.dropout;
+  return stays ? 1 / (1 - options.dropout) : 0;
+}
 
 struct Backpropagation::Unit {
   std::vector<float> input;     // padded, of all samples
@@ -131,8 +136,8 @@ void Backpropagation::forward_unit(std::size_t k, NetworkState& state, bool keep
     if (keep) {
       float& m = state.statistics[place.mean + c];
       float& v = state.statistics[place.variance + c];
-      m += static_cast<float>(kMomentum * (mean - static_cast<double>(m)));
-      v += static_cast<float>(kMomentum * (variance - static_cast<double>(v)));
+      m += static_cast<float>(kStatisticsMomentum * (mean - static_cast<double>(m)));
+      v += static_cast<float>(kStatisticsMomentum * (variance - static_cast<double>(v)));
     }
     factor[c] = state.parameters[place.scale + c] * unit.inverse[c];
     shift[c] = state.parameters[place.shift + c] - unit.mean[c] * factor[c];
@@ -277,7 +282,6 @@ double Backpropagation::dense_layers(const NetworkState& state, std::span<const 
   const int width[4] = {layout_.flat, layout_.shape.hidden1, layout_.shape.hidden2, 1};
   const std::size_t weights[3] = {layout_.weights1, layout_.weights2, layout_.weights3};
   const std::size_t bias[3] = {layout_.bias1, layout_.bias2, layout_.bias3};
-  const float kept = static_cast<float>(1 / (1 - options.dropout));
   std::vector<float> layers[2], slopes[2];  // hidden numbers; what they were multiplied with
   const float* in = flat_.data();
   for (int layer = 0; layer < 2; ++layer) {
@@ -298,11 +302,9 @@ double Backpropagation::dense_layers(const NetworkState& state, std::span<const 
     multiply(product);
     for (std::size_t k = 0; k < n * w; ++k) {
       float& at = layers[layer][k];
-      const std::uint64_t place = k + (static_cast<std::uint64_t>(layer) << 40);
-      const bool stays =
-          options.dropout <= 0 || place_uniform(options.seed, place) >= options.dropout;
-      slopes[layer][k] = at > 0 && stays ? kept : 0.0f;
-      at = stays ? at * kept : 0.0f;
+      const auto factor = static_cast<float>(dropout_factor(options, layer, k));
+      slopes[layer][k] = at > 0 ? factor : 0.0f;
+      at *= factor;
     }
     in = layers[layer].data();
   }

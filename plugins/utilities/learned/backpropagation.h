@@ -17,6 +17,13 @@ struct BatchOptions {
   bool keep_statistics = true;  // running statistics follow the batch's
 };
 
+// What hidden number `number` of a batch (sample times width plus place) is multiplied with: 0, or
+// what makes up for those that are 0. `layer`: 0 or 1.
+double dropout_factor(const BatchOptions& options, int layer, std::size_t number);
+
+// Share of a batch in the running statistics.
+inline constexpr double kStatisticsMomentum = 0.05;
+
 class Backpropagation {
  public:
   Backpropagation(const NetworkLayout& layout, int batch, int threads);

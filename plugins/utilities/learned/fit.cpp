@@ -235,10 +235,9 @@ Value Training::run() {
     resume();
   else
     begin();
-  char line[160];
-  std::snprintf(line, sizeof line, "%zu training samples, %zu validation samples, %zu parameters",
-                training_.size(), validation_.size(), network_->parameters());
-  request_.log(line);
+  request_.log(std::to_string(training_.size()) + " training samples, " +
+               std::to_string(validation_.size()) + " validation samples, " +
+               std::to_string(network_->parameters()) + " parameters, " + network_->backend());
   for (std::int64_t number = first_; number <= std::min(epochs_, until_); ++number) {
     if (number - 1 - best_epoch_ >= patience_ && best_epoch_ > 0) {
       request_.log("stopped: no improvement for " + std::to_string(patience_) + " epochs");
@@ -306,6 +305,8 @@ void add_training(ParameterTable& table, std::int64_t batch, std::int64_t epochs
               "constant rate, or falling to 0 at the last epoch")
       .boolean("mirror", true, "mirror half of the samples")
       .text("begin", "", "model with the initial weights; empty: none")
+      .choice("backend", "own", {"own", "libtorch"},
+              "what computes derivatives: kernels of Lapwing, or libtorch (preset `learn`)")
       .integer("validation_samples", 20000, "largest number of samples, evenly over all",
                between(2, 10000000));
 }
@@ -358,12 +359,16 @@ ParameterTable ray_fit() {
   return table;
 }
 
+Value fit(const Parameters& p, const FitRequest& request, NewTrainee own, NewTrainee torch) {
+  return Training(p.text("backend") == "libtorch" ? torch : own, p, request).run();
+}
+
 Value fit_grid(const Parameters& parameters, const FitRequest& request) {
-  return Training(grid_trainee, parameters, request).run();
+  return fit(parameters, request, grid_trainee, torch_grid_trainee);
 }
 
 Value fit_rays(const Parameters& parameters, const FitRequest& request) {
-  return Training(ray_trainee, parameters, request).run();
+  return fit(parameters, request, ray_trainee, torch_ray_trainee);
 }
 
 }  // namespace

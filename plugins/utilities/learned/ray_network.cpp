@@ -14,8 +14,6 @@
 namespace lapwing::learned {
 namespace {
 
-constexpr double kFloor = 1e-4;      // voxels, within the logarithm
-constexpr double kSpread = 5;        // voxels, added to the variance of a view's value
 constexpr double kFirstAnswer = -1;  // z of an untrained network
 
 // rows x depth times depth x columns, plus a bias.
@@ -174,6 +172,12 @@ void decode_rays(const RayNetworkLayout& layout, const std::uint8_t* bytes, bool
          [&](std::size_t k) { return static_cast<float>(bytes[k]) * (1 / 255.0f); });
 }
 
+void decode_targets(const RayShape& rays, const float* targets, bool mirrored, float* to) {
+  for (int row = 0; row < rays.rows; ++row)
+    for (int column = 0; column < rays.columns; ++column)
+      to[row * rays.columns + (mirrored ? rays.columns - 1 - column : column)] = *targets++;
+}
+
 namespace {
 
 // Everything that one sample leaves behind on its way forward.
@@ -247,12 +251,12 @@ double ray_loss(std::span<const float> answers, std::span<const float> targets) 
   double likelihood = 0, told = 0, there = 0;
   for (std::size_t k = 0; k < answers.size(); ++k) {
     const double p = static_cast<double>(answers[k]), t = static_cast<double>(targets[k]);
-    likelihood += p - t * std::log(p + kFloor);
+    likelihood += p - t * std::log(p + kRayFloor);
     told += p;
     there += t;
   }
   const double count = static_cast<double>(answers.size());
-  return likelihood / count + (told - there) * (told - there) / (there + kSpread) / count;
+  return likelihood / count + (told - there) * (told - there) / (there + kRaySpread) / count;
 }
 
 // -- training ------------------------------------------------------------------------------------
@@ -322,14 +326,14 @@ double RayBackpropagation::loss(std::span<const float> parameters, std::span<flo
       told += static_cast<double>(answers[k]);
       there += static_cast<double>(s.targets[k]);
     }
-    const double excess = 2 * (told - there) / (there + kSpread);
+    const double excess = 2 * (told - there) / (there + kRaySpread);
     for (std::size_t k = 0; k < f.z.size(); ++k) {
       const double p = static_cast<double>(answers[k]), t = static_cast<double>(s.targets[k]);
-      likelihood += p - t * std::log(p + kFloor);
+      likelihood += p - t * std::log(p + kRayFloor);
       const double slope = 1 / (1 + std::exp(-static_cast<double>(f.z[k])));
-      s.of_z[k] = static_cast<float>((1 - t / (p + kFloor) + excess) * slope * share);
+      s.of_z[k] = static_cast<float>((1 - t / (p + kRayFloor) + excess) * slope * share);
     }
-    s.loss = likelihood + (told - there) * (told - there) / (there + kSpread);
+    s.loss = likelihood + (told - there) * (told - there) / (there + kRaySpread);
     // The output and the last dense layer.
     const float* output = parameters.data() + layout_.output;
     float* of_output = sum + layout_.output;

@@ -74,6 +74,8 @@ std::vector<float> initial_parameters(const RayNetworkLayout& layout, Random ran
 // of samples holds them; `mirrored`: right and left exchanged.
 void decode_rays(const RayNetworkLayout& layout, const std::uint8_t* bytes, bool mirrored,
                  float* inputs);
+// Its targets, one for each ray.
+void decode_targets(const RayShape& rays, const float* targets, bool mirrored, float* to);
 
 // As it is asked. Thread-safe. `cells` gets an answer for each ray, in voxels.
 class RayNetwork {
@@ -90,9 +92,12 @@ class RayNetwork {
   std::vector<float> parameters_;
 };
 
+inline constexpr double kRayFloor = 1e-4;  // voxels, within the logarithm
+inline constexpr double kRaySpread = 5;    // voxels, added to the variance of a view's value
+
 // While it is trained. The loss of a sample with answers p and targets t of R rays, and with their
 // sums P and T, is
-//   1/R sum (p - t log(p + 1e-4)) + (P - T)^2 / (R (T + 5)) :
+//   1/R sum (p - t log(p + kRayFloor)) + (P - T)^2 / (R (T + kRaySpread)) :
 // the likelihood of counts whose mean is p (Poisson), and the error of the view's value over the
 // deviation of such a count.
 class RayBackpropagation {

@@ -62,16 +62,12 @@ class RayTrainee final : public Trainee {
   double loss(Model& model, const Samples& samples, const BatchDraw& batch,
               std::span<float> gradient) override {
     if (!network_) network_.emplace(layout_, batch_, threads_);
-    const int columns = shape_.rays.columns;
     parallel_for(batch.samples.size(), threads_, [&](std::size_t i) {
       const std::size_t k = batch.samples[i];
       const bool mirrored = batch.mirrored[i] != 0;
       decode_rays(layout_, samples.input(k), mirrored, network_->input(static_cast<int>(i)));
-      const float* from = samples.targets(k);
-      float* to = network_->target(static_cast<int>(i));
-      for (int row = 0; row < shape_.rays.rows; ++row)
-        for (int column = 0; column < columns; ++column)
-          to[row * columns + (mirrored ? columns - 1 - column : column)] = *from++;
+      decode_targets(shape_.rays, samples.targets(k), mirrored,
+                     network_->target(static_cast<int>(i)));
     });
     return network_->loss(model.state.parameters, gradient);
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "framework/explore/trainable.h"
 #include "plugins/utilities/learned/model_file.h"
@@ -40,6 +41,7 @@ struct BatchDraw {
 class Trainee {
  public:
   virtual ~Trainee() = default;
+  virtual std::string backend() const { return "own kernels"; }  // what computes loss()
   virtual std::size_t parameters() const = 0;
   virtual ViewInput input() const = 0;
   // Architecture, initial weights, and what the targets of the samples are normalised by.
@@ -57,6 +59,11 @@ using NewTrainee = std::unique_ptr<Trainee> (*)(const Parameters& parameters, in
 
 std::unique_ptr<Trainee> grid_trainee(const Parameters& parameters, int batch, int threads);
 std::unique_ptr<Trainee> ray_trainee(const Parameters& parameters, int batch, int threads);
+
+// The same networks, whose loss and derivatives libtorch computes: on a GPU where libtorch finds
+// one, else on the CPU. InputError in a build without libtorch.
+std::unique_ptr<Trainee> torch_grid_trainee(const Parameters& parameters, int batch, int threads);
+std::unique_ptr<Trainee> torch_ray_trainee(const Parameters& parameters, int batch, int threads);
 
 // What samples hold, by the parameters of samples; InputError for what no network takes.
 ViewInput grid_input(const Parameters& parameters);

@@ -1,85 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The network of the learned utility against libtorch (preset `learn`): what it answers, its loss,
-// and every derivative.
-#include <torch/torch.h>
-
+// The networks of the learned utilities against libtorch (preset `learn`): answers, loss, every
+// derivative, and training by either.
 #include <gtest/gtest.h>
 
 #include "plugins/utilities/learned/backpropagation.h"
 #include "plugins/utilities/learned/model_file.h"
+#include "plugins/utilities/learned/torch_networks.h"
 #include "tests/plugins/learned_state.h"
+#include "tests/plugins/utilities/fit_fixture.h"
 
 namespace lapwing::learned {
 namespace {
-
-namespace fn = torch::nn::functional;
-
-torch::Tensor tensor_of(const std::vector<float>& all, std::size_t begin,
-                        std::vector<std::int64_t> sizes) {
-  return torch::from_blob(const_cast<float*>(all.data()) + begin, sizes, torch::kFloat32).clone();
-}
-
-// The definition in libtorch's words. Parameters are one leaf tensor, so that its gradient lies as
-// ours does.
-class TorchNetwork {
- public:
-  TorchNetwork(const NetworkLayout& layout, const NetworkState& state)
-      : layout_(layout),
-        parameters(
-            tensor_of(state.parameters, 0, {static_cast<std::int64_t>(state.parameters.size())})),
-        statistics_(
-            tensor_of(state.statistics, 0, {static_cast<std::int64_t>(state.statistics.size())})) {}
-
-  // Inputs [sample, map, z, y, x]; `training`: normalised by the batch itself.
-  torch::Tensor answers(torch::Tensor now, bool training) const {
-    for (const UnitPlace& unit : layout_.units) {
-      const torch::Tensor weights =
-          take(unit.weights, {3, 3, 3, unit.in, unit.out}).permute({4, 3, 0, 1, 2});
-      now = torch::conv3d(now, weights, {}, 1, 1);
-      now = torch::batch_norm(now, take(unit.scale, {unit.out}), take(unit.shift, {unit.out}),
-                              statistics_.narrow(0, at(unit.mean), unit.out).clone(),
-                              statistics_.narrow(0, at(unit.variance), unit.out).clone(), training,
-                              0.1, 1e-5, false);
-      now = torch::relu(now);
-      if (unit.last_of_block) now = torch::max_pool3d(now, 2);
-    }
-    // Maps fastest.
-    now = now.permute({0, 2, 3, 4, 1}).reshape({now.size(0), layout_.flat});
-    const NetworkShape& s = layout_.shape;
-    now = torch::relu(dense(now, layout_.weights1, layout_.bias1, layout_.flat, s.hidden1));
-    now = torch::relu(dense(now, layout_.weights2, layout_.bias2, s.hidden1, s.hidden2));
-    return dense(now, layout_.weights3, layout_.bias3, s.hidden2, 1).squeeze(1);
-  }
-
-  // (5.4)
-  torch::Tensor loss(const torch::Tensor& inputs, const torch::Tensor& targets,
-                     double lambda) const {
-    torch::Tensor sum = fn::mse_loss(answers(inputs, true), targets);
-    for (const auto& [begin, end] : layout_.regularised)
-      sum = sum + lambda * parameters.narrow(0, at(begin), at(end - begin)).square().sum();
-    return sum;
-  }
-
- private:
-  static std::int64_t at(std::size_t place) { return static_cast<std::int64_t>(place); }
-  torch::Tensor take(std::size_t begin, std::vector<std::int64_t> sizes) const {
-    std::int64_t count = 1;
-    for (const std::int64_t size : sizes) count *= size;
-    return parameters.narrow(0, at(begin), count).view(sizes);
-  }
-  torch::Tensor dense(const torch::Tensor& in, std::size_t weights, std::size_t bias, int from,
-                      int to) const {
-    return torch::matmul(in, take(weights, {from, to})) + take(bias, {to});
-  }
-
-  NetworkLayout layout_;
-
- public:
-  torch::Tensor parameters;
-
- private:
-  torch::Tensor statistics_;
-};
 
 // Random grids as a file of samples holds them.
 std::vector<std::vector<std::uint8_t>> grids_of(const NetworkLayout& layout, int count) {
@@ -107,7 +38,7 @@ torch::Tensor inputs_of(const NetworkLayout& layout,
       const float v = static_cast<float>(grid[k]) / 255.0f;
       all.push_back(k % 2 == 0 ? 2 * v - 1 : 1 - v);
     }
-  return tensor_of(all, 0,
+  return tensor_of(all,
                    {static_cast<std::int64_t>(grids.size()), g.up, g.ahead, g.across, g.channels()})
       .permute({0, 4, 1, 2, 3});
 }
@@ -115,7 +46,7 @@ torch::Tensor inputs_of(const NetworkLayout& layout,
 void expect_the_same_answers(const NetworkLayout& layout, const NetworkState& state) {
   const auto grids = grids_of(layout, 24);
   const torch::NoGradGuard no_gradient;
-  const torch::Tensor theirs = TorchNetwork(layout, state).answers(inputs_of(layout, grids), false);
+  const torch::Tensor theirs = TorchGridNetwork(layout, state).answers(inputs_of(layout, grids));
   const FoldedNetwork ours(layout, state);
   double most = 0, spread = 0;
   for (std::size_t n = 0; n < grids.size(); ++n) {
@@ -170,12 +101,13 @@ TEST(LearnedAgainstTorch, LossAndEveryDerivative) {
   std::vector<float> targets;
   for (int n = 0; n < batch; ++n) targets.push_back(static_cast<float>(random.normal()));
 
-  TorchNetwork theirs(layout, state);
-  theirs.parameters.set_requires_grad(true);
+  const TorchGridNetwork theirs(layout, state);
+  theirs.parameters().set_requires_grad(true);
+  TorchGridNetwork::Batch drawn;
   const torch::Tensor loss =
-      theirs.loss(inputs_of(layout, grids), tensor_of(targets, 0, {batch}), lambda);
+      theirs.loss(inputs_of(layout, grids), tensor_of(targets, {batch}), lambda, drawn);
   loss.backward();
-  const torch::Tensor expected = theirs.parameters.grad();
+  const torch::Tensor expected = theirs.parameters().grad();
 
   Backpropagation ours(layout, batch, 2);
   for (int n = 0; n < batch; ++n)
@@ -188,9 +120,88 @@ TEST(LearnedAgainstTorch, LossAndEveryDerivative) {
   EXPECT_NEAR(our_loss, loss.item<double>(), 1e-5 * our_loss);
   const double scale = expected.abs().max().item<double>();
   const torch::Tensor difference =
-      (tensor_of(gradient, 0, {static_cast<std::int64_t>(gradient.size())}) - expected).abs();
+      (tensor_of(gradient, {static_cast<std::int64_t>(gradient.size())}) - expected).abs();
   EXPECT_GT(scale, 0.01);
   EXPECT_LT(difference.max().item<double>(), 1e-4 * scale);
+}
+
+TEST(LearnedAgainstTorch, RaysLossAndEveryDerivative) {
+  RayNetworkShape shape;
+  shape.rays = {7, 5};
+  shape.width = 16;
+  const RayNetworkLayout layout(shape);
+  const std::vector<float> parameters = initial_parameters(layout, Random(3));
+  constexpr int kBatch = 16;
+  RayBackpropagation ours(layout, kBatch, 2);
+  Random random(5);
+  std::vector<float> inputs, targets;
+  for (int n = 0; n < kBatch; ++n) {
+    std::vector<std::uint8_t> bytes(shape.rays.size());
+    for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random.integer(0, 255));
+    decode_rays(layout, bytes.data(), n % 2 == 0, ours.input(n));
+    for (int ray = 0; ray < layout.rays(); ++ray)
+      ours.target(n)[ray] = static_cast<float>(random.uniform(0, 3));
+    inputs.insert(inputs.end(), ours.input(n),
+                  ours.input(n) + layout.rays() * RayNetworkLayout::kInputs);
+    targets.insert(targets.end(), ours.target(n), ours.target(n) + layout.rays());
+  }
+  const TorchRayNetwork theirs(layout, parameters);
+  theirs.parameters().set_requires_grad(true);
+  const torch::Tensor loss =
+      theirs.loss(tensor_of(inputs, {kBatch, 5, 7, RayNetworkLayout::kInputs}),
+                  tensor_of(targets, {kBatch, layout.rays()}));
+  loss.backward();
+  const torch::Tensor expected = theirs.parameters().grad();
+  std::vector<float> gradient(layout.parameters, 0);
+  EXPECT_NEAR(ours.loss(parameters, gradient), loss.item<double>(), 1e-5 * loss.item<double>());
+  const double scale = expected.abs().max().item<double>();
+  EXPECT_GT(scale, 0.01);
+  EXPECT_LT((tensor_of(gradient, {static_cast<std::int64_t>(gradient.size())}) - expected)
+                .abs()
+                .max()
+                .item<double>(),
+            1e-4 * scale);
+}
+
+// Both backends: the same draws, so that models differ by rounding alone.
+template <class Folder>
+void expect_the_same_training(const char* setting, const Value& value) {
+  Model models[2];
+  for (const bool torch : {false, true}) {
+    Folder training;
+    training.given.set("epochs", 2);
+    if (!value.is_null()) training.given.set(setting, value);
+    training.given.set("backend", torch ? "libtorch" : "own");
+    std::string told;
+    training.request.log = [&](const std::string& line) { told += line + "\n"; };
+    training.run();
+    EXPECT_EQ(told.find("libtorch") != std::string::npos, torch) << told;
+    models[torch] = read_model(training.request.model);
+  }
+  const NetworkState &own = models[0].state, &torch = models[1].state;
+  ASSERT_EQ(own.parameters.size(), torch.parameters.size());
+  ASSERT_EQ(own.statistics.size(), torch.statistics.size());
+  // Adam turns rounding of derivatives near 0 into steps; 4 steps an epoch of 0.01 each.
+  double most = 0;
+  for (std::size_t k = 0; k < own.parameters.size(); ++k)
+    most = std::max(most, std::abs(static_cast<double>(own.parameters[k] - torch.parameters[k])));
+  EXPECT_LT(most, 5e-3);
+  for (std::size_t k = 0; k < own.statistics.size(); ++k)
+    EXPECT_NEAR(own.statistics[k], torch.statistics[k], 1e-3);
+  EXPECT_NEAR(models[0].provenance.at("validation_loss").as_number(),
+              models[1].provenance.at("validation_loss").as_number(), 1e-3);
+}
+
+TEST(LearnedAgainstTorch, TrainsRaysAlike) {
+  expect_the_same_training<RayTraining>("convolutions", Value(2));
+}
+
+TEST(LearnedAgainstTorch, TrainsGridsAlike) {
+  expect_the_same_training<GridTraining>("dropout", Value(0.3));
+}
+
+TEST(LearnedAgainstTorch, TrainsResidualGridsAlike) {
+  expect_the_same_training<GridTraining>("residual", Value(true));
 }
 
 }  // namespace

@@ -14,51 +14,8 @@ namespace {
 
 using namespace learned;
 
-// Small enough to be trained in a moment.
-constexpr GridShape kGrid{8, 4, 4, 1};
-
-// Samples whose target is how much is certain in the middle: easy to learn.
-void write_easy_samples(const std::filesystem::path& folder, int files, std::uint64_t seed) {
-  Random random(seed);
-  for (int file = 0; file < files; ++file) {
-    SampleSet set;
-    set.world = "made " + std::to_string(file);
-    set.input = kGrid;
-    const PlainMap map{MapSettings{}};
-    EpisodeView known;
-    known.map = &map;
-    set.mapping = mapping_of(known);
-    set.mapping.set("resolution", 0.4);
-    for (int k = 0; k < 64; ++k) {
-      const double level = random.uniform();
-      std::vector<float> grid;
-      for (std::size_t i = 0; i < kGrid.size(); ++i)
-        grid.push_back(static_cast<float>(0.8 * level + 0.2 * random.uniform()));
-      set.add(grid, std::vector{static_cast<float>(100 * level)});
-    }
-    write_samples(set, folder / ("set_" + std::to_string(seed * 10 + file) + ".samples"));
-  }
-}
-
-struct FitFixture : TrainingFolder {
-  FitFixture() : TrainingFolder(kGridTrainable, "learned_fit", &write_easy_samples, 2) {
-    Value& grid = given.set("grid", Value::map());
-    grid.set("across", 8);
-    grid.set("ahead", 4);
-    grid.set("up", 4);
-    grid.set("levels", 1);
-    given.set("units", 1);
-    given.set("hidden1", 16);
-    given.set("hidden2", 8);
-    given.set("batch", 32);
-    given.set("epochs", 12);
-    given.set("rate", 0.01);
-    given.set("dropout", 0.0);
-  }
-};
-
 TEST(LearnedFit, LearnsWhatIsEasy) {
-  FitFixture fixture;
+  GridTraining fixture;
   const Value figures = fixture.run();
   EXPECT_GT(figures.at("validation_rho").as_number(), 0.95);
   const SampleSet set = read_samples(fixture.request.validation.front());
@@ -71,7 +28,7 @@ TEST(LearnedFit, LearnsWhatIsEasy) {
 
 // The same order of values, and values of the same size, by way of their square roots.
 TEST(LearnedFit, LearnsRootsAsWell) {
-  FitFixture fixture;
+  GridTraining fixture;
   fixture.given.set("targets", "root");
   const Value figures = fixture.run();
   EXPECT_GT(figures.at("validation_rho").as_number(), 0.95);
@@ -91,7 +48,7 @@ TEST(LearnedFit, LearnsRootsAsWell) {
 
 // One epoch more of what was learned is better than one of nothing.
 TEST(LearnedFit, SaysThatItCameToNothing) {
-  FitFixture fixture;
+  GridTraining fixture;
   fixture.given.set("rate", 1e30);
   try {
     fixture.run();
@@ -103,7 +60,7 @@ TEST(LearnedFit, SaysThatItCameToNothing) {
 }
 
 TEST(LearnedFit, BeginsWithAModel) {
-  FitFixture fixture;
+  GridTraining fixture;
   const double whole = fixture.run().at("validation_loss").as_number();
   std::filesystem::rename(fixture.request.model, fixture.folder / "first.model");
   fixture.given.set("epochs", 1);
@@ -122,7 +79,7 @@ TEST(LearnedFit, BeginsWithAModel) {
 
 // The schedule is that of all epochs: what is left may follow.
 TEST(LearnedFit, EndsWhereItIsAskedTo) {
-  FitFixture fixture;
+  GridTraining fixture;
   fixture.given.set("schedule", "cosine");
   fixture.run();
   const std::string whole = read_file(fixture.request.model);
@@ -139,7 +96,7 @@ TEST(LearnedFit, EndsWhereItIsAskedTo) {
 
 // The checkpoint holds the last weights; without the best ones there is nothing to go on with.
 TEST(LearnedFit, GoesOnWithItsModelAlone) {
-  FitFixture fixture;
+  GridTraining fixture;
   fixture.given.set("epochs", 2);
   fixture.request.resume = true;  // of nothing: it begins
   fixture.run();
@@ -160,7 +117,7 @@ TEST(LearnedFit, GoesOnWithItsModelAlone) {
 }
 
 TEST(LearnedFit, ResumedItIsAsIfNeverStopped) {
-  FitFixture fixture;
+  GridTraining fixture;
   fixture.run();
   const std::string whole = read_file(fixture.request.model);
   std::filesystem::remove(fixture.request.model);
@@ -178,7 +135,7 @@ TEST(LearnedFit, ResumedItIsAsIfNeverStopped) {
 }
 
 TEST(LearnedFit, GoesOnWithTheSameAlone) {
-  FitFixture fixture;
+  GridTraining fixture;
   fixture.given.set("epochs", 1);
   fixture.run();
   fixture.request.resume = true;
@@ -190,7 +147,7 @@ TEST(LearnedFit, GoesOnWithTheSameAlone) {
   fixture.given.set("rate", 0.02);
   EXPECT_NE(fixture.refusal().find("another rate"), std::string::npos) << fixture.refusal();
   fixture.given.set("rate", 0.01);
-  write_easy_samples(fixture.folder / "validation", 1, 3);
+  write_grid_samples(fixture.folder / "validation", 1, 3);
   fixture.request.validation = sample_files({fixture.folder / "validation"});
   EXPECT_NE(fixture.refusal().find("another validation samples"), std::string::npos)
       << fixture.refusal();
@@ -223,7 +180,7 @@ TEST(LearnedModel, TheShippedGridIsWhatItWas) {
 }
 
 TEST(LearnedModel, DamageIsFound) {
-  FitFixture fixture;
+  GridTraining fixture;
   fixture.given.set("epochs", 1);
   fixture.run();
   const auto path = fixture.request.model;

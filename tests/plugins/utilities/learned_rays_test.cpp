@@ -196,50 +196,8 @@ TEST(RayNetwork, ShapesWithoutSenseAreRefused) {
   EXPECT_TRUE(ray_network_shape_from(to_value(little())) == little());
 }
 
-// A cell shows as many voxels as its ray's first number says: easy to learn.
-void write_ray_samples(const std::filesystem::path& folder, int files, std::uint64_t seed) {
-  Random random(seed);
-  for (int file = 0; file < files; ++file) {
-    SampleSet set;
-    set.world = "made " + std::to_string(seed * 10) + std::to_string(file);
-    const RayShape rays{6, 5};
-    set.input = rays;
-    const PlainMap map{MapSettings{}};
-    EpisodeView known;
-    known.map = &map;
-    set.mapping = mapping_of(known);
-    set.mapping.set("resolution", 0.4);
-    for (int k = 0; k < 64; ++k) {
-      std::vector<float> image(rays.size(), 0), cells;
-      const double most = random.uniform(0, 5);
-      for (int ray = 0; ray < rays.rays(); ++ray) {
-        const double there = random.uniform();
-        image[static_cast<std::size_t>(ray * RayShape::kChannels)] = static_cast<float>(there);
-        image[static_cast<std::size_t>(ray * RayShape::kChannels + 1)] =
-            static_cast<float>(most / 5);
-        cells.push_back(static_cast<float>(most * there));
-      }
-      set.add(image, cells);
-    }
-    write_samples(
-        set, folder / ("set_" + std::to_string(seed * 10) + std::to_string(file) + ".samples"));
-  }
-}
-
-struct RayFixture : TrainingFolder {
-  RayFixture() : TrainingFolder(kRayTrainable, "learned_rays", &write_ray_samples, 4) {
-    given.set("rays", to_value(RayShape{6, 5}));
-    given.set("width", 16);
-    given.set("convolutions", 1);
-    given.set("batch", 16);
-    given.set("epochs", 25);
-    given.set("patience", 25);
-    given.set("rate", 0.01);
-  }
-};
-
 TEST(LearnedRays, LearnsWhatIsEasy) {
-  RayFixture fixture;
+  RayTraining fixture;
   const Value figures = fixture.run();
   EXPECT_GT(figures.at("validation_rho").as_number(), 0.97);
   const SampleSet set = read_samples(fixture.request.validation.front());
@@ -257,7 +215,7 @@ TEST(LearnedRays, LearnsWhatIsEasy) {
 }
 
 TEST(LearnedRays, ResumedItIsAsIfNeverStopped) {
-  RayFixture fixture;
+  RayTraining fixture;
   fixture.given.set("epochs", 4);
   fixture.given.set("schedule", "cosine");
   fixture.run();
@@ -274,7 +232,7 @@ TEST(LearnedRays, ResumedItIsAsIfNeverStopped) {
 }
 
 TEST(LearnedRays, ModelsOfBothNetworksAreToldApart) {
-  RayFixture fixture;
+  RayTraining fixture;
   fixture.given.set("epochs", 1);
   fixture.run();
   const SampleSet set = read_samples(fixture.request.validation.front());
@@ -290,6 +248,14 @@ TEST(LearnedRays, ModelsOfBothNetworksAreToldApart) {
   fixture.request.checkpoint = fixture.folder / "b.checkpoint";
   const std::string other = fixture.refusal();
   EXPECT_NE(other.find("holds samples of another input"), std::string::npos) << other;
+}
+
+TEST(LearnedRays, ABuildWithoutLibtorchSaysWhichHasIt) {
+  RayTraining training;
+  training.given.set("backend", "libtorch");
+  const std::string told = training.refusal();
+  EXPECT_NE(told.find("cmake --preset learn"), std::string::npos) << told;
+  EXPECT_FALSE(std::filesystem::exists(training.request.model));
 }
 
 // Of four rounds of its recipe, each begun with the model of the one before; no world that is
