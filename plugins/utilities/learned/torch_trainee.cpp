@@ -25,7 +25,7 @@ class TorchTrainee : public Trainee {
  public:
   TorchTrainee(std::unique_ptr<Trainee> own, int threads)
       : own_(std::move(own)), threads_(threads), device_(device_here()) {
-    torch::set_num_threads(threads);
+    torch::set_num_threads(threads > 0 ? threads : available_threads());
   }
 
   std::string backend() const override {

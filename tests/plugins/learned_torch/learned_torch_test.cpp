@@ -172,6 +172,7 @@ void expect_the_same_training(const char* setting, const Value& value) {
     training.given.set("epochs", 2);
     if (!value.is_null()) training.given.set(setting, value);
     training.given.set("backend", torch ? "libtorch" : "own");
+    training.request.threads = 0;  // one per core, as by default
     std::string told;
     training.request.log = [&](const std::string& line) { told += line + "\n"; };
     training.run();
