@@ -47,7 +47,7 @@ class TorchGridNetwork {
  public:
   // What a batch does beside its answers. Undefined masks leave out nothing.
   struct Batch {
-    torch::Tensor mask1, mask2;            // factors of hidden numbers (dropout)
+    torch::Tensor mask1, mask2;                   // factors of hidden numbers (dropout)
     std::vector<torch::Tensor> means, variances;  // are set: of each unit, over the batch
   };
 
@@ -64,8 +64,9 @@ class TorchGridNetwork {
     for (const UnitPlace& unit : layout_.units) {
       const torch::Tensor in = now;
       now = torch::conv3d(
-          now, parameters_.take(unit.weights, {3, 3, 3, unit.in, unit.out}).permute({4, 3, 0, 1, 2}),
-          {}, 1, 1);
+          now,
+          parameters_.take(unit.weights, {3, 3, 3, unit.in, unit.out}).permute({4, 3, 0, 1, 2}), {},
+          1, 1);
       torch::Tensor mean, variance;
       if (batch) {
         mean = now.mean({0, 2, 3, 4});
@@ -103,9 +104,9 @@ class TorchGridNetwork {
                      Batch& batch) const {
     torch::Tensor sum = (answers(inputs, &batch) - targets).square().mean();
     for (const auto& [begin, end] : layout_.regularised)
-      sum = sum + lambda * parameters_.take(begin, {static_cast<std::int64_t>(end - begin)})
-                               .square()
-                               .sum();
+      sum =
+          sum +
+          lambda * parameters_.take(begin, {static_cast<std::int64_t>(end - begin)}).square().sum();
     return sum;
   }
 
@@ -126,17 +127,17 @@ class TorchRayNetwork {
   // Inputs [sample, row, column, number] of decode_rays; answers [sample, ray], in voxels.
   torch::Tensor answers(const torch::Tensor& inputs) const {
     const std::int64_t width = layout_.shape.width;
-    torch::Tensor now = torch::relu(
-        parameters_.dense(inputs, layout_.first, RayNetworkLayout::kInputs, width));
+    torch::Tensor now =
+        torch::relu(parameters_.dense(inputs, layout_.first, RayNetworkLayout::kInputs, width));
     now = now.permute({0, 3, 1, 2});
     for (std::size_t k = 0; k < layout_.convolutions.size(); ++k) {
       const std::size_t begin = layout_.convolutions[k];
       const std::int64_t dilation = std::int64_t{1} << k;
-      now = now +
-            torch::relu(torch::conv2d(
-                now, parameters_.take(begin, {3, 3, width, width}).permute({3, 2, 0, 1}),
-                parameters_.take(begin + static_cast<std::size_t>(9 * width * width), {width}), 1,
-                dilation, dilation));
+      now =
+          now + torch::relu(torch::conv2d(
+                    now, parameters_.take(begin, {3, 3, width, width}).permute({3, 2, 0, 1}),
+                    parameters_.take(begin + static_cast<std::size_t>(9 * width * width), {width}),
+                    1, dilation, dilation));
     }
     now = torch::relu(parameters_.dense(now.permute({0, 2, 3, 1}), layout_.last, width, width));
     return torch::softplus(parameters_.dense(now, layout_.output, width, 1)).flatten(1);

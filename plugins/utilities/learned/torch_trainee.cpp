@@ -108,8 +108,8 @@ class TorchGridTrainee final : public TorchTrainee {
     TorchGridNetwork::Batch drawn;
     drawn.mask1 = mask(0, count, layout.shape.hidden1);
     drawn.mask2 = mask(1, count, layout.shape.hidden2);
-    const torch::Tensor loss = network.loss(grids(first, count), tensor_of(targets_, {count}, device_),
-                                            options_.regularisation, drawn);
+    const torch::Tensor loss = network.loss(
+        grids(first, count), tensor_of(targets_, {count}, device_), options_.regularisation, drawn);
     loss.backward();
     copy_gradient(network.parameters(), gradient);
     for (std::size_t k = 0; k < layout.units.size(); ++k) {
@@ -122,9 +122,9 @@ class TorchGridTrainee final : public TorchTrainee {
  private:
   // [sample, map, z, y, x], without the borders.
   torch::Tensor grids(const UnitPlace& first, std::int64_t count) const {
-    const torch::Tensor padded =
-        tensor_of(inputs_, {count, first.size[2] + 2, first.size[1] + 2, first.size[0] + 2, first.in},
-                  device_);
+    const torch::Tensor padded = tensor_of(
+        inputs_, {count, first.size[2] + 2, first.size[1] + 2, first.size[0] + 2, first.in},
+        device_);
     return padded.narrow(1, 1, first.size[2])
         .narrow(2, 1, first.size[1])
         .narrow(3, 1, first.size[0])
@@ -138,7 +138,8 @@ class TorchGridTrainee final : public TorchTrainee {
     return tensor_of(factors, {count, width}, device_);
   }
 
-  static void follow(std::vector<float>& statistics, std::size_t begin, const torch::Tensor& found) {
+  static void follow(std::vector<float>& statistics, std::size_t begin,
+                     const torch::Tensor& found) {
     const torch::Tensor here = found.to(torch::kCPU).contiguous();
     for (std::int64_t c = 0; c < here.numel(); ++c) {
       float& kept = statistics[begin + static_cast<std::size_t>(c)];
