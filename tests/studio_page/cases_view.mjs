@@ -47,6 +47,32 @@ export const views = [
       await shot(x === "0" ? "brought_back" : "far_away");
     }
   }],
+  ["the map shows a place and what is above it as one, and is left to fly", async ({ page, shot }) => {
+    await page.evaluate(() => document.activeElement.blur());
+    await keys(page, "e");
+    const far = await page.evaluate(async () => {
+      window.lapwing.redraw();
+      await window.lapwing.drawn();
+      const rect = document.querySelector("#world").getBoundingClientRect();
+      let most = 0;
+      for (let x = -40; x <= 40; x += 4) for (let y = -40; y <= 40; y += 4) {
+        const [low, high] = [0, 30].map((z) => window.lapwing.pageOf([x, y, z]));
+        if (low.x < rect.left || low.x > rect.right || low.y < rect.top || low.y > rect.bottom) continue;
+        most = Math.max(most, Math.hypot(low.x - high.x, low.y - high.y));
+      }
+      return most;
+    });
+    assert.ok(far > 0 && far < 1, `${far} pixels apart`);
+    await shot("map");
+    const { revision } = await studioState(page);
+    await keys(page, "k");
+    await page.waitForFunction(() => /map is not seen/.test(document.querySelector("#notes").textContent));
+    assert.equal((await studioState(page)).revision, revision);
+    await keys(page, "v");
+    assert.equal(await page.$eval("#map", (e) => e.getAttribute("aria-pressed")), "false");
+    assert.ok((await page.evaluate("window.lapwing.eye"))[2] < 200);
+    await keys(page, "v");
+  }],
   ["played, scrubbed and sped up by mouse", async ({ page }) => {
     await page.click("#rate-two");
     await page.click("#play");

@@ -251,6 +251,10 @@ export class Studio {
 
   setMode(mode: Mode): void {
     if (mode === this.mode) return;
+    if (this.map && (mode === "camera" || mode === "race")) {    // a map has no eye that flies
+      this.map = false;
+      this.tell("look");
+    }
     this.mode = mode;
     this.tell("mode");
   }

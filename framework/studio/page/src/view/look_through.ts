@@ -13,6 +13,10 @@ const CENTRED = 0.12;      // rad between the view and a subject that it means
 const FREE = 0.3;          // s from every keyframe, for one between them
 
 export function keyframeHere(studio: Studio, stage: Stage, pick: Pick): void {
+  if (studio.map) {
+    studio.session.note("A map is not seen from anywhere: leave it (E) for a keyframe from where you look.");
+    return;
+  }
   const eye = stage.worldCamera.position;
   const position: Vec3 = [eye.x, eye.y, eye.z];
   const look = lookedAtFrom(studio, stage, pick);

@@ -17,7 +17,7 @@ const SLACK = 0.15;       // of a stick, that counts as its middle
 const FILLED = 0.85;      // of the view by a film that is shown whole
 const OUTGROWN = 3;       // of the film's extent against what is shown, to show it whole again
 const DEFAULT_FOV = 55;   // degrees, as stage.ts begins
-const MAP_FOV = 4;        // degrees
+const MAP_FOV = 0.1;      // degrees: what stands 30 m high leans by 5 cm at the rim of the view, at most
 const NEARBY = 25;        // m
 const held = ["w", "a", "s", "d", "q", "e", "arrowleft", "arrowright", "arrowup", "arrowdown"];
 
@@ -43,7 +43,10 @@ export class Navigation {
     this.orbit.maxPolarAngle = Math.PI * 0.52;
     this.orbit.minDistance = 1;
     this.orbit.maxDistance = 1500;       // more where the film is larger
-    this.orbit.addEventListener("change", () => stage.moved());
+    this.orbit.addEventListener("change", () => {
+      if (this.above) stage.reachAround(stage.worldCamera.position.distanceTo(this.orbit.target));
+      stage.moved();
+    });
     studio.on(["mode"], () => this.switch());
     studio.on(["look"], () => this.map(studio.map));
     window.addEventListener("gamepadconnected", () => {
@@ -106,8 +109,8 @@ export class Navigation {
     this.stage.invalidate();
   }
 
-  // The same place from straight above, north up, through a long lens: nearly without perspective,
-  // and a drag moves. Or back to where it was.
+  // The same place from straight above, north up, through so long a lens that there is no
+  // perspective to be seen; a drag moves. Or back to where it was.
   map(on: boolean): void {
     const camera = this.stage.worldCamera;
     if (on === (this.above !== null)) return;
@@ -118,12 +121,14 @@ export class Navigation {
       const away = Math.max(camera.position.distanceTo(target), 10) * (wide / far);
       camera.fov = MAP_FOV;
       camera.position.set(target.x, target.y - 1e-4 * away, target.z + away);
+      this.orbit.minDistance *= wide / far;
       this.orbit.maxDistance *= wide / far;
-      this.stage.reach(2 * away);
+      this.stage.reachAround(away);
     } else if (this.above) {
       const away = camera.position.distanceTo(target) * (far / wide);
       camera.fov = DEFAULT_FOV;
       camera.position.copy(target).addScaledVector(this.above.position.normalize(), away);
+      this.orbit.minDistance *= far / wide;
       this.orbit.maxDistance *= far / wide;
       this.stage.reach(Math.max(4000, 4 * away));
       this.above = null;
@@ -154,6 +159,7 @@ export class Navigation {
     const size = box.getSize(new THREE.Vector3()).length() + 1;
     const grown = size > OUTGROWN * this.whole || OUTGROWN * size < this.whole;
     if (grown && this.studio.mode === "orbit") return this.frame(box);
+    if (this.above) return;
     const eye = this.stage.worldCamera.position;
     const farthest = eye.distanceTo(box.getCenter(new THREE.Vector3())) + size;
     if (farthest > this.stage.worldCamera.far) this.stage.reach(1.5 * farthest);

@@ -10,14 +10,13 @@ import type { Vec3 } from "../state/types";
 import type { Studio } from "../studio";
 import type { Gizmo } from "./gizmo";
 import type { Solids } from "./solids";
-import type { Stage } from "./stage";
+import { level, meeting, type Stage } from "./stage";
 
 const NEAR = 9;          // px from the path
 const FAR = 120;         // px, of a drag along it
 const STILL = 4;         // px that a click may move
 const AHEAD = 20;        // m, where the sky is looked at
 const HEIGHT = 3;        // m above the ground, of a first keyframe
-const FARTHEST = 30000;  // m
 const LEAST = 0.5;       // m, of the sides of a polygon that is drawn
 
 export class Pick {
@@ -153,11 +152,9 @@ export class Pick {
     window.addEventListener("keydown", escape, true);
   }
 
-  onLevel(event: MouseEvent, height: number): Vec3 | null {
-    const ray = this.stage.rayAt(event.clientX, event.clientY);
-    const hit = ray.intersectPlane(new THREE.Plane(new THREE.Vector3(0, 0, 1), -height),
-                                   new THREE.Vector3());
-    return hit && hit.distanceTo(ray.origin) < FARTHEST ? [hit.x, hit.y, height] : null;
+  onLevel(event: { clientX: number; clientY: number }, height: number): Vec3 | null {
+    const hit = meeting(this.stage.rayAt(event.clientX, event.clientY), level(height));
+    return hit && [hit.x, hit.y, height];
   }
 
   // A click on nothing that can be selected.
@@ -264,9 +261,6 @@ export class Pick {
   surfaceAt(event: { clientX: number; clientY: number }): Vec3 | null {
     const solid = this.solidAt(event);
     if (solid) return solid.point;
-    const ray = this.stage.rayAt(event.clientX, event.clientY);
-    const hit = ray.intersectPlane(new THREE.Plane(new THREE.Vector3(0, 0, 1), 0),
-                                   new THREE.Vector3());
-    return hit && hit.distanceTo(ray.origin) < FARTHEST ? [hit.x, hit.y, 0] : null;
+    return this.onLevel(event, 0);
   }
 }

@@ -11,7 +11,7 @@ import { cornersOf } from "../state/shapes";
 import type { JsonObject, Vec3 } from "../state/types";
 import type { Studio } from "../studio";
 import { el, whileHeld } from "./dom";
-import type { Stage } from "./stage";
+import { level, meeting, type Stage } from "./stage";
 
 const THRESHOLD = 3;     // px before a press is a drag
 const MOST_OBSTACLES = 12;
@@ -185,13 +185,7 @@ class PinDrag {
   }
 
   private level(event: PointerEvent, height: number): THREE.Vector3 | null {
-    const ray = this.stage.rayAt(event.clientX, event.clientY);
-    return this.hit(ray, new THREE.Plane(new THREE.Vector3(0, 0, 1), -height));
-  }
-
-  private hit(ray: THREE.Ray, plane: THREE.Plane): THREE.Vector3 | null {
-    const found = ray.intersectPlane(plane, new THREE.Vector3());
-    return found && found.distanceTo(ray.origin) < 30000 ? found : null;
+    return meeting(this.stage.rayAt(event.clientX, event.clientY), level(height));
   }
 
   at(event: PointerEvent, now: Vec3): Vec3 {
@@ -201,7 +195,7 @@ class PinDrag {
       const normal = this.stage.worldCamera.getWorldDirection(new THREE.Vector3()).setZ(0);
       if (normal.lengthSq() < 1e-6) return now;
       const plane = new THREE.Plane().setFromNormalAndCoplanarPoint(normal.normalize(), from);
-      const hit = this.hit(ray, plane);
+      const hit = meeting(ray, plane);
       return hit ? [now[0], now[1], hit.z] : now;
     }
     const hit = this.level(event, now[2]);

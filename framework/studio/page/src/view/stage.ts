@@ -6,6 +6,7 @@ import { colour } from "./dom";
 
 THREE.ColorManagement.enabled = false;
 
+const FARTHEST = 30000;   // m
 const STILL = 250;    // ms without a move, after which all is drawn in full
 
 // Colours as they are written, no curves: what the style sheet says is what is seen.
@@ -196,6 +197,14 @@ export class Stage {
     camera.updateProjectionMatrix();
   }
 
+  // What is around a place so far from the eye, half as far before it and behind it.
+  reachAround(distance: number): void {
+    const camera = this.worldCamera;
+    camera.near = distance / 2;
+    camera.far = 1.5 * distance;
+    camera.updateProjectionMatrix();
+  }
+
   // Where a point of the world is in the opening, in pixels; null when it is behind the eye.
   onScreen(point: readonly [number, number, number]): { x: number; y: number } | null {
     const p = new THREE.Vector3(...point).applyMatrix4(this.worldCamera.matrixWorldInverse);
@@ -214,6 +223,17 @@ export class Stage {
     this.worldCamera);
     return caster.ray;
   }
+}
+
+export const level = (height: number): THREE.Plane =>
+  new THREE.Plane(new THREE.Vector3(0, 0, 1), -height);
+
+// Where a ray meets a plane; null where it does not, or so far across the ground that it all but
+// looks along it. A map is seen from farther above.
+export function meeting(ray: THREE.Ray, plane: THREE.Plane): THREE.Vector3 | null {
+  const found = ray.intersectPlane(plane, new THREE.Vector3());
+  const { x, y } = ray.origin;
+  return found && Math.hypot(found.x - x, found.y - y) < FARTHEST ? found : null;
 }
 
 // Smooth edges cost a processor most of a frame.
