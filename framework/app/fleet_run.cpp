@@ -64,8 +64,8 @@ std::string fleet_page(const FleetOutcome& outcome, const JudgedRun& judged) {
     report.status_mark = Mark::fail;
   }
   // Before the certificate.
-  report.sections.insert(report.sections.end() - 1, outcome.result.sections.begin(),
-                         outcome.result.sections.end());
+  const std::vector<Section> own = sections_of(outcome.result);
+  report.sections.insert(report.sections.end() - 1, own.begin(), own.end());
   TextBlock findings;
   for (const std::string& note : all_notes(outcome.result)) findings.text += note + "\n\n";
   if (!findings.text.empty())

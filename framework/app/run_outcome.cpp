@@ -86,7 +86,7 @@ std::string report_page(const MissionResult& result, const std::string& status,
     findings.text = text;
     report.sections.insert(report.sections.begin(), Section{"Findings", {findings}});
   }
-  own.insert(own.end(), result.sections.begin(), result.sections.end());
+  for (Section& section : sections_of(result)) own.push_back(std::move(section));
   report.sections.insert(report.sections.begin() + 1, own.begin(), own.end());
   report.viewer = std::move(viewer);
   return render_html(report);

@@ -39,8 +39,9 @@ Section known_section(const ScanRecord& record, const Eigen::AlignedBox3d& regio
   Section section{record.surveyed ? "Knowledge before the tour" : "Knowledge of the first flight",
                   {}};
   if (record.scene)
-    section.blocks.push_back(Image{encode_png(*record.scene),
-                                   "The scene of the simulation; the planner does not know it"});
+    section.blocks.push_back(
+        Image{encode_png(mesh_picture(*record.scene->scene, record.scene->view, 0)),
+              "The scene of the simulation; the planner does not know it"});
   const MapPicture heights = height_picture(*record.map, kMostMapPixels);
   section.blocks.push_back(
       Image{encode_png(heights.picture), "The map from above: highest occupied voxels from " +

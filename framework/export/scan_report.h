@@ -13,7 +13,7 @@
 #include "framework/map/known_surface.h"
 #include "framework/map/unknown_edge.h"
 #include "framework/photogrammetry/surface_prediction.h"
-#include "framework/picture/render.h"
+#include "framework/picture/mesh_picture.h"
 #include "framework/trajectory/plan.h"
 
 namespace lapwing {
@@ -36,7 +36,7 @@ struct ScanPrediction {
 
 // What a scan was planned on, beside what its plan holds. Shared, not copied.
 struct ScanRecord {
-  std::optional<Picture> scene;            // the scene that was flown in, where there was one
+  std::optional<SceneView> scene;          // the scene that was flown in, where there was one
   std::shared_ptr<const Map> map;          // what the first flight knew
   std::shared_ptr<const MeshScene> prior;  // likewise
   bool surveyed = false;  // map and mesh are of a surveyor's data, not of a first flight

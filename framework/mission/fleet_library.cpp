@@ -106,7 +106,7 @@ void tell_fleet(const TeamObject& team, double pixel_error, MissionRun& run, Fle
   tell_scan(*record, run, {made.block, made.notes, made.told});
   const auto plan = std::make_shared<const Plan>(made.plans.front().plan);
   made.scan = record;
-  made.late_sections = [record, plan] { return fleet_sections(*plan, *record); };
+  made.late_sections = [record, plan](const Plan&) { return fleet_sections(*plan, *record); };
 }
 
 // run:fleet{team =, plans =, drones =, separation =, swap =, reserve =, pixel_error =, notes =,

@@ -30,8 +30,7 @@ struct FleetObject {
   std::vector<std::string> told;                // likewise, that stand in no plan
   Value block;                                  // figures, for --json
   std::shared_ptr<const ScanRecord> scan = {};  // of all tours together
-  // Of the report, once the mission has ended.
-  std::function<std::vector<Section>()> late_sections;
+  std::function<std::vector<Section>(const Plan&)> late_sections;  // as of MissionResult
 };
 
 inline constexpr const char* kTeamType = "team";

@@ -256,7 +256,7 @@ bool Mission::planning_began() const {
 
 namespace {
 
-MissionResult result_of(Sandbox& sandbox, const PlanObject& planned) {
+MissionResult result_of(const PlanObject& planned) {
   MissionResult result;
   result.plan = planned.plan;
   result.report = planned.report;
@@ -271,19 +271,15 @@ MissionResult result_of(Sandbox& sandbox, const PlanObject& planned) {
   result.scan = planned.scan;
   result.kept = planned.kept;
   result.exploration = planned.exploration;
-  if (planned.late_sections) {
-    const Sandbox::ClockPause pause(sandbox);
-    for (Section& section : planned.late_sections(result.plan))
-      result.sections.push_back(std::move(section));
-  }
+  result.late_sections = planned.late_sections;
   return result;
 }
 
-MissionResult result_of(Sandbox& sandbox, const FleetObject& made, const MissionRun& run) {
+MissionResult result_of(const FleetObject& made, const MissionRun& run) {
   MissionResult result;
   result.fleet = std::make_shared<FleetResult>();
   result.fleet->document = made.document;
-  for (const PlanObject& plan : made.plans) result.fleet->tours.push_back(result_of(sandbox, plan));
+  for (const PlanObject& plan : made.plans) result.fleet->tours.push_back(result_of(plan));
   result.plan.mission = run.name;
   result.plan.kind = run.kind;
   result.plan.configuration = run.configuration;
@@ -294,12 +290,18 @@ MissionResult result_of(Sandbox& sandbox, const FleetObject& made, const Mission
   result.block = made.block;
   result.block_name = "tour";
   result.scan = made.scan;
-  const Sandbox::ClockPause pause(sandbox);
-  result.sections = made.late_sections();
+  result.late_sections = made.late_sections;
   return result;
 }
 
 }  // namespace
+
+std::vector<Section> sections_of(const MissionResult& result) {
+  std::vector<Section> sections = result.sections;
+  if (!result.late_sections) return sections;
+  for (Section& section : result.late_sections(result.plan)) sections.push_back(std::move(section));
+  return sections;
+}
 
 MissionResult Mission::plan() {
   MissionResult result;
@@ -318,7 +320,7 @@ MissionResult Mission::plan() {
       return;
     }
     if (const FleetObject* fleet = test_object<FleetObject>(state, -1, kFleetType)) {
-      result = result_of(impl.sandbox, *fleet, impl.run);
+      result = result_of(*fleet, impl.run);
       return;
     }
     const PlanObject* planned = test_object<PlanObject>(state, -1, kPlanType);
@@ -329,7 +331,7 @@ MissionResult Mission::plan() {
               "plan: expected the function to return run:plan{...}, a map or a fleet, got ") +
               luaL_typename(state, -1));
     }
-    result = result_of(impl.sandbox, *planned);
+    result = result_of(*planned);
   });
   result.solve_seconds = impl.run.solve_seconds;
   result.obstacle_folder = impl.run.obstacles.folder();

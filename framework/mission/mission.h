@@ -10,6 +10,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -35,14 +36,17 @@ struct MissionResult {
   Plan plan;  // without certificate
   SolveReport report;
   std::string solver;
-  double solve_seconds = 0;                     // wall clock, all solves together
-  std::vector<std::string> notes;               // sentences for the user
-  std::vector<std::string> details = {};        // likewise, of what was tried and came to nothing
-  Value block;                                  // the kind's own figures, null or a map
-  std::string block_name = {};                  // of them in the answer; "": the kind
-  std::vector<Pilot> pilots;                    // who fly it by hand, in simulation
-  std::vector<std::string> told = {};           // likewise, that stand in no plan
-  std::vector<Section> sections = {};           // of the report, beside those of every flight
+  double solve_seconds = 0;               // wall clock, all solves together
+  std::vector<std::string> notes;         // sentences for the user
+  std::vector<std::string> details = {};  // likewise, of what was tried and came to nothing
+  Value block;                            // the kind's own figures, null or a map
+  std::string block_name = {};            // of them in the answer; "": the kind
+  std::vector<Pilot> pilots;              // who fly it by hand, in simulation
+  std::vector<std::string> told = {};     // likewise, that stand in no plan
+  // Of the report, beside those of every flight: those that are made already, and those that
+  // sections_of draws; null where there are none of these.
+  std::vector<Section> sections = {};
+  std::function<std::vector<Section>(const Plan&)> late_sections = {};
   std::shared_ptr<const ScanRecord> scan = {};  // of a scan: what all its tours were planned on
   std::shared_ptr<const KeptTour> kept = {};    // of a tour of a scan, where it is asked for
   std::shared_ptr<const ExplorationRecord> exploration = {};  // of an exploration: how it went
@@ -57,6 +61,10 @@ struct FleetResult {
   Fleet document;
   std::vector<MissionResult> tours;
 };
+
+// All sections of its report. Pictures of a scan take longer than its certificate, so that they are
+// drawn where a report is written, and only there.
+std::vector<Section> sections_of(const MissionResult& result);
 
 class Mission {
  public:

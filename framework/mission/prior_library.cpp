@@ -171,11 +171,10 @@ int look(lua_State* state) {
   prior.mapping.map->set_threads(run.settings.threads);
   prior.truth = surface.scene;
   if (!prior.scene)
-    prior.scene = mesh_picture(
-        *surface.scene,
-        overview(surface.region, {kPictureWidth, kPictureHeight, 720, 720, 359.5, 224.5},
-                 radians(60), radians(-35)),
-        run.settings.threads);
+    prior.scene =
+        SceneView{surface.scene,
+                  overview(surface.region, {kPictureWidth, kPictureHeight, 720, 720, 359.5, 224.5},
+                           radians(60), radians(-35))};
   std::size_t done = 0;
   for (const Parameters& pose : poses) {
     if (run.settings.cancellation && run.settings.cancellation->cancelled()) throw Cancelled();

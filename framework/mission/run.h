@@ -137,8 +137,7 @@ struct PlanObject {
   std::string block_name = {};            // of them in the answer; "": the kind
   std::vector<Pilot> pilots = {};         // who fly it by hand
   std::vector<std::string> told = {};     // likewise, that stand in no plan
-  // Of the report, beside those of every flight: those that are made already, and those that are
-  // drawn once the mission has ended; null where there are none of these.
+  // As of MissionResult.
   std::vector<Section> sections = {};
   std::function<std::vector<Section>(const Plan&)> late_sections = {};
   std::shared_ptr<const ScanRecord> scan = {};                // of a scan: what it was planned on

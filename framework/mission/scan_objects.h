@@ -11,7 +11,7 @@
 #include "framework/map/ray_gaps.h"
 #include "framework/mission/flight_rules.h"
 #include "framework/mission/map_objects.h"
-#include "framework/picture/render.h"
+#include "framework/picture/mesh_picture.h"
 #include "framework/surface/point_fusion.h"
 #include "framework/vehicle/pursuit.h"
 #include "framework/vehicle/smooth_leg.h"
@@ -33,7 +33,7 @@ struct Prior {
   std::vector<Viewpoint> views;            // from which depth images were taken
   MapRays rays;                            // of those images, and of files
   bool surveyed = false;                   // map and mesh are of a surveyor's data
-  std::optional<Picture> scene;            // of the scene flown in, for the report alone
+  std::optional<SceneView> scene;          // the scene flown in, for the report alone
   std::shared_ptr<const MeshScene> truth;  // that scene, for the report's figures alone
 };
 
