@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Ours first, then its rivals, then the patterns in the two sizes of thesis table 4.3.
-constexpr const char* kMethods[] = {"cost_benefit+local_search",
+constexpr const char* kMethods[] = {"cost_benefit+recursive_greedy+local_search",
                                     "recursive_greedy",
                                     "cost_benefit",
                                     "greedy",

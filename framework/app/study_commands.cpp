@@ -52,7 +52,7 @@ void add_evaluate_scan(CLI::App& evaluate, Invocation& invocation, ScanEvaluatio
       ->expected(-1)
       ->take_all();
   add_repeated(*scan, "--method", "NAME", asked.methods,
-               "a tour solver (milp, milp:nodes=100, cost_benefit+local_search) or a pattern "
+               "a tour solver (milp, milp:nodes=100, greedy+local_search) or a pattern "
                "(circle_50, ellipse_60x40, meander_85x100, hemisphere_60); default: all");
   add_text(*scan, "--seeds", "N,N,...", "seeds of the missions; default: 1",
            [&](const std::string& text) {

@@ -90,7 +90,8 @@ class RecipeRun {
     for (const RecipeSamples& line : recipe_.validation) require(line);
     for (const RecipeRound& round : recipe_.rounds) {
       for (const RecipeSamples& line : round.samples) require(line);
-      check(trainable->fit_parameters(), round.fit);
+      const Parameters fit = check(trainable->fit_parameters(), round.fit);
+      if (trainable->require_fit) trainable->require_fit(fit);
       for (const char* input : {"rays", "grid"})
         if (round.fit.find(input))
           throw InputError(std::string("fit: a recipe uses the standard input of its network; '") +

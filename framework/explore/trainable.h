@@ -18,7 +18,7 @@ struct FitRequest {
   std::filesystem::path checkpoint;  // is written after every epoch
   bool resume = false;  // go on from the checkpoint, if there is one, with the same result
   std::uint64_t seed = 1;
-  int threads = 1;  // the result is the same for any number
+  int threads = 1;  // the result is the same for any number, unless parameters say otherwise
   const CancellationToken* cancellation = nullptr;
   std::function<void(const std::string&)> log = [](const std::string&) {};
 };
@@ -39,6 +39,8 @@ struct Trainable {
   Value (*fit)(const Parameters& parameters, const FitRequest& request);
   // Refused where the samples are of another mapping or shape.
   Prediction (*predict)(const std::filesystem::path& model, const SampleSet& samples, int threads);
+  // InputError for parameters of a fit that this build cannot follow. Null: it follows all.
+  void (*require_fit)(const Parameters& parameters) = nullptr;
 };
 
 // Spearman's rho: the correlation of ranks, ties sharing their mean rank. NaN for fewer than two

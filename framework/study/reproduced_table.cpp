@@ -219,10 +219,12 @@ ReproducedTable reproduced_table(const Reproduction& made,
     auto& cells = table.cells.emplace_back();
     for (std::size_t c = 0; c < made.columns.size(); ++c) cells.push_back(assembly.cell(row, c));
     table.below.emplace_back();
-    if (made.paired && row.name != made.paired->to)
-      table.below.back() = assembly.below(row, made.rows[place_of(made.rows, made.paired->to)],
-                                          made.columns[place_of(made.columns, made.paired->column)],
-                                          made.paired->by);
+    if (!made.paired || row.name == made.paired->to) continue;
+    const ReproducedRow& to = made.rows[place_of(made.rows, made.paired->to)];
+    const ReproducedColumn& column = made.columns[place_of(made.columns, made.paired->column)];
+    // The conditions of another study differ, and so would more than the method.
+    if (source_of(made, row, column) == source_of(made, to, column))
+      table.below.back() = assembly.below(row, to, column, made.paired->by);
   }
   for (const ReproducedRank& rank : made.ranks) {
     const std::size_t column = place_of(made.columns, rank.column);

@@ -94,17 +94,17 @@ local function refuse(run, graph, tour, budget)
     .. "the budget", budget, why, graph.candidates, graph.reach, tour.reachable))
 end
 
--- A tour within `budget` seconds by the solver that is asked for, begun with another one's, and the
--- evaluations of both.
+-- A tour within `budget` seconds by the solver that is asked for, begun with those of others, and the
+-- evaluations of all.
 local function solved(run, graph, finish, budget)
   local o = run.options.tour
   local initial, spent = nil, 0
-  local beginner = tours.beginner(run)
-  if beginner then
+  for _, beginner in ipairs(tours.beginners(run)) do
     local begun = run:solve_tour { graph = graph, solver = beginner, budget = budget,
-                                   finish = finish, images = o.images, guard = o.guard }
+                                   finish = finish, images = o.images, guard = o.guard,
+                                   initial = initial }
     if begun.images > 1 then initial = begun end
-    spent = begun.evaluations
+    spent = spent + begun.evaluations
   end
   local tour = run:solve_tour { graph = graph, solver = tours.solver(run), budget = budget,
                                 finish = finish, images = o.images, guard = o.guard,

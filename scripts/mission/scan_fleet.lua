@@ -46,7 +46,7 @@ end
 local function check_solvers(run)
   local able = run:team_solvers()
   for option, solver in pairs { ["tour.solver"] = run.options.tour.solver,
-                                ["tour.begin"] = tours.beginner(run) } do
+                                ["tour.begin"] = tours.beginners(run, true)[1] } do
     local takes = false
     for _, name in ipairs(able) do takes = takes or name == solver end
     if not takes then
@@ -147,17 +147,16 @@ local function solved(run, graph, budget, batteries)
     return run:solve_team { graph = graph, solver = solver, budget = budget, images = o.images,
                             tours = wanted, guard = o.guard, initial = initial }
   end
-  local initial, spent
-  local beginner = tours.beginner(run)
-  if beginner then
-    local begun = solve(beginner)
+  local initial, spent = nil, 0
+  for _, beginner in ipairs(tours.beginners(run, true)) do
+    local begun = solve(beginner, initial)
     if #begun.tours > 0 then initial = begun end
-    spent = begun.evaluations
+    spent = spent + begun.evaluations
   end
   local team = solve(tours.solver(run), initial)
   if #team.tours == 0 and initial and run:cancelled() then team = initial end
   if team.images < 2 or #team.tours == 0 then refuse(run, graph, team, budget, batteries) end
-  return team, (spent or 0) + team.evaluations
+  return team, spent + team.evaluations
 end
 
 -- Plans of the tours that take images elsewhere than at home, and the drones that fly them. Map and

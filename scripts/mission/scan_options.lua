@@ -184,7 +184,8 @@ local DECLARATIONS = {
       number("guard", 300, "s", "limit of computing time of a solver; a run that it ends may not "
              .. "repeat", POSITIVE),
       { name = "begin", type = "text", summary =
-        "solver whose tour local_search improves, or none; absent: cost_benefit" } } },
+        "solver whose tour local_search improves, or none; absent: the better one of cost_benefit "
+        .. "and recursive_greedy" } } },
 }
 
 for _, list in ipairs { regions.DECLARATIONS, zones.DECLARATIONS, wishes.DECLARATIONS,

@@ -7,7 +7,10 @@ local OWN_OF_TOUR = { solver = true, budget = true, budget_metres = true, images
                       begin = true, guard = true }
 local BUDGET = 300         -- s, where none is given
 local METRES_A_SECOND = 3  -- of a budget in metres (reading 4.6)
-local BEGIN = "cost_benefit"
+-- Each begins with the tour of the one before, and the better one is kept. Which it is depends on
+-- region and budget. Recursive greedy plans one tour.
+local BEGIN = { "cost_benefit", "recursive_greedy" }
+local BEGIN_OF_FLEET = { "cost_benefit" }
 
 -- The solver with its own parameters.
 function M.solver(run)
@@ -25,11 +28,12 @@ function M.budget(run)
   return tour.budget_metres and tour.budget_metres / METRES_A_SECOND or tour.budget or BUDGET
 end
 
--- The solver whose tour the first solver begins with, or nil.
-function M.beginner(run)
+-- The solvers whose tours the solver begins with, one after the other; `fleet`: of several tours.
+function M.beginners(run, fleet)
   local tour = run.options.tour
-  local begin = tour.begin or BEGIN
-  if begin ~= "none" and tour.solver == "local_search" then return begin end
+  if tour.begin == "none" or tour.solver ~= "local_search" then return {} end
+  if tour.begin then return { tour.begin } end
+  return fleet and BEGIN_OF_FLEET or BEGIN
 end
 
 -- What the options of the tour say together.

@@ -49,6 +49,7 @@ export const views = [
   }],
   ["the map shows a place and what is above it as one, and is left to fly", async ({ page, shot }) => {
     await page.evaluate(() => document.activeElement.blur());
+    const before = await page.evaluate("window.lapwing.eye");
     await keys(page, "e");
     const far = await page.evaluate(async () => {
       window.lapwing.redraw();
@@ -66,12 +67,20 @@ export const views = [
     await shot("map");
     const { revision } = await studioState(page);
     await keys(page, "k");
-    await page.waitForFunction(() => /map is not seen/.test(document.querySelector("#notes").textContent));
+    await page.waitForFunction(() => /no camera position/.test(document.querySelector("#notes").textContent));
     assert.equal((await studioState(page)).revision, revision);
+    const pressed = () => page.$eval("#map", (e) => e.getAttribute("aria-pressed"));
+    const eye = () => page.evaluate("window.lapwing.eye");
     await keys(page, "v");
-    assert.equal(await page.$eval("#map", (e) => e.getAttribute("aria-pressed")), "false");
-    assert.ok((await page.evaluate("window.lapwing.eye"))[2] < 200);
-    await keys(page, "v");
+    assert.equal(await pressed(), "false");
+    assert.ok((await eye())[2] < 200);
+    // And from flying into the map, and back to where one was.
+    await page.click("#map");
+    assert.equal(await pressed(), "true");
+    assert.ok((await eye())[2] > 1000);
+    assert.equal(await page.$eval("#fly-camera", (e) => e.getAttribute("aria-pressed")), "false");
+    await page.click("#map");
+    (await eye()).forEach((v, k) => assert.ok(Math.abs(v - before[k]) < 0.01, `${v}, ${before}`));
   }],
   ["played, scrubbed and sped up by mouse", async ({ page }) => {
     await page.click("#rate-two");

@@ -79,6 +79,27 @@ TEST_F(Reproductions, StateCommandsAndCells) {
   EXPECT_EQ(made.studies.front().words(true), quick);
 }
 
+TEST_F(Reproductions, RowsArePairedWithinAStudy) {
+  std::string text = kTable;
+  const auto put = [&](const std::string& part, const std::string& by) {
+    text.replace(text.find(part), part.size(), by);
+  };
+  put("columns:", "  noisy:\n    command: evaluate scan\n    arguments: [hut.lua]\ncolumns:");
+  put("{name: A, where", "{name: A, study: hut, where");
+  put("{name: B, where", "{name: B, study: noisy, where");
+  put(", records: times", "");
+  write("9.2", text);
+  const Reproduction made = read_reproduction(folder_, "9.2");
+  const auto rows = [](const char* text) { return from_json(text, "rows").as_list(); };
+  const ReproducedTable table = reproduced_table(
+      made,
+      {{{"hut", ""}, rows(R"([{"method": "a", "seed": 1, "with_first": {"f": 0.5}}])")},
+       {{"noisy", ""}, rows(R"([{"method": "b", "seed": 1, "with_first": {"f": 0.4}}])")}},
+      "caption");
+  EXPECT_NEAR(table.cells[1][0].mean, 40, 1e-9);
+  EXPECT_FALSE(table.below[1]);
+}
+
 TEST_F(Reproductions, CellsAreMeansBesideTheThesis) {
   const Reproduction made = read_reproduction(folder_, "9.1");
   const Value::List rows = from_json(R"([{"method": "a", "seed": 1, "with_first": {"f": 0.5}},

@@ -133,6 +133,8 @@ Training::Training(NewTrainee make, const Parameters& p, const FitRequest& reque
                      " of training, " + std::to_string(validation_.size()) + " of validation");
   batch_ = static_cast<int>(std::min(static_cast<std::size_t>(batch_), training_.size()));
   network_ = make(p, batch_, request.threads);
+  // With libtorch, the result depends on the device and the number of threads as well.
+  asked_.set("backend", network_->backend());
   model_.mapping = mapping;
   model_.provenance = Value::map();
 }
@@ -160,6 +162,7 @@ void Training::require_same(const Value& checkpoints) const {
     if (key == "epochs" && !cosine_) continue;
     const Value* other = checkpoints.find(key);
     if (other && *other == value) continue;
+    if (!other && key == "backend" && value == Value(kOwnBackend)) continue;  // of an older version
     throw InputError("--resume: '" + request_.checkpoint.string() + "' was made with another " +
                      key + ": " + (other ? to_json(*other, -1) : "none") + ", not " +
                      to_json(value, -1));
@@ -265,6 +268,7 @@ Value Training::run() {
       from.set("validation_samples", static_cast<std::int64_t>(validation_.size()));
       from.set("epoch", number);
       from.set("seed", static_cast<std::int64_t>(request_.seed));
+      if (network_->backend() != kOwnBackend) from.set("backend", network_->backend());
       from.set("validation_loss", judged.loss);
       from.set("validation_rho", std::isfinite(judged.rho) ? Value(judged.rho) : Value());
       std::vector<std::string> worlds;
@@ -359,6 +363,10 @@ ParameterTable ray_fit() {
   return table;
 }
 
+void require_backend(const Parameters& p) {
+  if (p.text("backend") == "libtorch") require_torch();
+}
+
 Value fit(const Parameters& p, const FitRequest& request, NewTrainee own, NewTrainee torch) {
   return Training(p.text("backend") == "libtorch" ? torch : own, p, request).run();
 }
@@ -384,9 +392,11 @@ void require_fit(const SampleSet& samples, const ViewInput& input, const Model& 
     throw InputError("the samples do not fit the model '" + path.string() + "': " + difference);
 }
 
-const Trainable kGridTrainable{&grid_samples, [](const Parameters& p) { return grid_input(p); },
-                               &grid_fit, &fit_grid, &predict_by_grid};
-const Trainable kRayTrainable{&ray_samples, [](const Parameters& p) { return ray_input(p); },
-                              &ray_fit, &fit_rays, &predict_by_rays};
+const Trainable kGridTrainable{&grid_samples,    [](const Parameters& p) { return grid_input(p); },
+                               &grid_fit,        &fit_grid,
+                               &predict_by_grid, &require_backend};
+const Trainable kRayTrainable{&ray_samples,     [](const Parameters& p) { return ray_input(p); },
+                              &ray_fit,         &fit_rays,
+                              &predict_by_rays, &require_backend};
 
 }  // namespace lapwing::learned

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Both networks in the words of libtorch: the definition that our kernels are held against, and
-// what trains where the parameter `backend` asks for libtorch. For builds with LAPWING_LEARN.
+// Both networks, written with libtorch. Tests compare our kernels with them; `backend: libtorch`
+// trains them. For builds with LAPWING_LEARN.
 //
-// All parameters are one leaf tensor that lies as ours does, and so does its gradient.
+// All parameters are one leaf tensor. It has the order of our vector of parameters, and so does its
+// gradient.
 #pragma once
 
 #include <torch/torch.h>

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Training by libtorch (LAPWING_LEARN): its automatic derivatives in place of our own. Initial
 // weights, order of samples, dropout, Adam, validation and files are the same.
-#include <cmath>
+#include <new>
 
+#include "framework/core/error.h"
 #include "framework/core/parallel.h"
 #include "plugins/utilities/learned/backpropagation.h"
 #include "plugins/utilities/learned/torch_networks.h"
@@ -13,6 +14,21 @@ namespace {
 
 torch::Device device_here() {
   return torch::cuda::is_available() ? torch::kCUDA : torch::kCPU;
+}
+
+// One line for the user in place of a stack of calls.
+template <class Compute>
+double in_torch(Compute compute) {
+  try {
+    return compute();
+  } catch (const c10::Error& error) {
+    const std::string what = error.what_without_backtrace();
+    if (what.find("out of memory") != std::string::npos ||
+        what.find("not enough memory") != std::string::npos ||
+        what.find("alloc_cpu") != std::string::npos)
+      throw std::bad_alloc();
+    throw Error("libtorch: " + what.substr(0, what.find('\n')));
+  }
 }
 
 void copy_gradient(const torch::Tensor& parameters, std::span<float> gradient) {
@@ -26,10 +42,14 @@ class TorchTrainee : public Trainee {
   TorchTrainee(std::unique_ptr<Trainee> own, int threads)
       : own_(std::move(own)), threads_(threads), device_(device_here()) {
     torch::set_num_threads(threads > 0 ? threads : available_threads());
+    // A GPU would otherwise round to ten bits in the middle of its products.
+    at::globalContext().setAllowTF32CuDNN(false);
+    at::globalContext().setAllowTF32CuBLAS(false);
   }
 
   std::string backend() const override {
-    return std::string("libtorch ") + TORCH_VERSION + " on " + device_.str();
+    return std::string("libtorch ") + TORCH_VERSION + " on " + device_.str() +
+           (device_.is_cpu() ? ", threads: " + std::to_string(torch::get_num_threads()) : "");
   }
   std::size_t parameters() const override { return own_->parameters(); }
   ViewInput input() const override { return own_->input(); }
@@ -67,14 +87,16 @@ class TorchRayTrainee final : public TorchTrainee {
       decode_rays(layout, samples.input(k), mirrored, inputs_.data() + i * inputs);
       decode_targets(rays, samples.targets(k), mirrored, targets_.data() + i * targets);
     });
-    const TorchRayNetwork network(layout, model.state.parameters, device_);
-    network.parameters().set_requires_grad(true);
-    const torch::Tensor loss = network.loss(
-        tensor_of(inputs_, {count, rays.rows, rays.columns, RayNetworkLayout::kInputs}, device_),
-        tensor_of(targets_, {count, layout.rays()}, device_));
-    loss.backward();
-    copy_gradient(network.parameters(), gradient);
-    return loss.item<double>();
+    return in_torch([&] {
+      const TorchRayNetwork network(layout, model.state.parameters, device_);
+      network.parameters().set_requires_grad(true);
+      const torch::Tensor loss = network.loss(
+          tensor_of(inputs_, {count, rays.rows, rays.columns, RayNetworkLayout::kInputs}, device_),
+          tensor_of(targets_, {count, layout.rays()}, device_));
+      loss.backward();
+      copy_gradient(network.parameters(), gradient);
+      return loss.item<double>();
+    });
   }
 
  private:
@@ -103,20 +125,23 @@ class TorchGridTrainee final : public TorchTrainee {
       targets_[i] = static_cast<float>(model.answer_of(static_cast<double>(*samples.targets(k))));
     });
     options_.seed = batch.seed;
-    const TorchGridNetwork network(layout, model.state, device_);
-    network.parameters().set_requires_grad(true);
-    TorchGridNetwork::Batch drawn;
-    drawn.mask1 = mask(0, count, layout.shape.hidden1);
-    drawn.mask2 = mask(1, count, layout.shape.hidden2);
-    const torch::Tensor loss = network.loss(
-        grids(first, count), tensor_of(targets_, {count}, device_), options_.regularisation, drawn);
-    loss.backward();
-    copy_gradient(network.parameters(), gradient);
-    for (std::size_t k = 0; k < layout.units.size(); ++k) {
-      follow(model.state.statistics, layout.units[k].mean, drawn.means[k]);
-      follow(model.state.statistics, layout.units[k].variance, drawn.variances[k]);
-    }
-    return loss.item<double>();
+    return in_torch([&] {
+      const TorchGridNetwork network(layout, model.state, device_);
+      network.parameters().set_requires_grad(true);
+      TorchGridNetwork::Batch drawn;
+      drawn.mask1 = mask(0, count, layout.shape.hidden1);
+      drawn.mask2 = mask(1, count, layout.shape.hidden2);
+      const torch::Tensor loss =
+          network.loss(grids(first, count), tensor_of(targets_, {count}, device_),
+                       options_.regularisation, drawn);
+      loss.backward();
+      copy_gradient(network.parameters(), gradient);
+      for (std::size_t k = 0; k < layout.units.size(); ++k) {
+        follow(model.state.statistics, layout.units[k].mean, drawn.means[k]);
+        follow(model.state.statistics, layout.units[k].variance, drawn.variances[k]);
+      }
+      return loss.item<double>();
+    });
   }
 
  private:
@@ -152,6 +177,8 @@ class TorchGridTrainee final : public TorchTrainee {
 };
 
 }  // namespace
+
+void require_torch() {}
 
 std::unique_ptr<Trainee> torch_grid_trainee(const Parameters& parameters, int batch, int threads) {
   return std::make_unique<TorchGridTrainee>(parameters, batch, threads);

@@ -38,10 +38,12 @@ struct BatchDraw {
   std::uint64_t seed = 0;
 };
 
+inline constexpr const char* kOwnBackend = "own kernels";
+
 class Trainee {
  public:
   virtual ~Trainee() = default;
-  virtual std::string backend() const { return "own kernels"; }  // what computes loss()
+  virtual std::string backend() const { return kOwnBackend; }  // what computes loss()
   virtual std::size_t parameters() const = 0;
   virtual ViewInput input() const = 0;
   // Architecture, initial weights, and what the targets of the samples are normalised by.
@@ -61,7 +63,9 @@ std::unique_ptr<Trainee> grid_trainee(const Parameters& parameters, int batch, i
 std::unique_ptr<Trainee> ray_trainee(const Parameters& parameters, int batch, int threads);
 
 // The same networks, whose loss and derivatives libtorch computes: on a GPU where libtorch finds
-// one, else on the CPU. InputError in a build without libtorch.
+// one, else on the CPU. Rounding depends on the device and the number of threads. InputError in a
+// build without libtorch, from `require_torch` as well.
+void require_torch();
 std::unique_ptr<Trainee> torch_grid_trainee(const Parameters& parameters, int batch, int threads);
 std::unique_ptr<Trainee> torch_ray_trainee(const Parameters& parameters, int batch, int threads);
 

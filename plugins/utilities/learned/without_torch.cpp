@@ -14,6 +14,10 @@ namespace {
 
 }  // namespace
 
+void require_torch() {
+  refuse();
+}
+
 std::unique_ptr<Trainee> torch_grid_trainee(const Parameters&, int, int) {
   refuse();
 }

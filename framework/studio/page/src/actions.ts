@@ -158,7 +158,12 @@ export class Actions {
       case "retime": return this.retime(key === "Alt+ArrowLeft" ? -0.1 : 0.1);
       case "pace": return pace(studio, key === "Alt+PageUp" ? "faster" : "slower");
       case "walk": studio.setMode(studio.mode === "walk" ? "orbit" : "walk"); return true;
-      case "map": studio.map = !studio.map; studio.tell("look"); return true;
+      case "map":
+        if (studio.mode === "race") return true;
+        if (studio.mode === "camera") studio.setMode("orbit");
+        studio.map = !studio.map;
+        studio.tell("look");
+        return true;
       case "speeds": studio.speeds = !studio.speeds; studio.tell("look"); return true;
       case "margins": studio.margins = !studio.margins; studio.tell("look"); return true;
       case "compare": parts.compare.open(); return true;

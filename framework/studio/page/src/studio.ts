@@ -251,7 +251,7 @@ export class Studio {
 
   setMode(mode: Mode): void {
     if (mode === this.mode) return;
-    if (this.map && (mode === "camera" || mode === "race")) {    // a map has no eye that flies
+    if (this.map && (mode === "camera" || mode === "race")) {    // the map cannot be flown
       this.map = false;
       this.tell("look");
     }

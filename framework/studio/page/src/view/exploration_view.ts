@@ -7,7 +7,7 @@ import type { ExplorationWorld } from "../state/types";
 import type { Studio } from "../studio";
 import { blob } from "./blobs";
 import { cutMaterial } from "./solids";
-import type { Stage } from "./stage";
+import { magnified, type Stage } from "./stage";
 
 const LIVE = "live";       // no blob
 const TICK = 1.2;          // m, of the line that shows where a candidate looks
@@ -28,6 +28,7 @@ export class ExplorationView {
     new THREE.BufferGeometry(), new THREE.PointsMaterial({ vertexColors: true, sizeAttenuation: true }));
   private readonly candidates = new THREE.LineSegments(
     new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ vertexColors: true }));
+  private edge = 1;                           // m, of a voxel
   private growth: Growth | null = null;
   private fetched = "";
   private drawn: unknown = null;
@@ -35,6 +36,9 @@ export class ExplorationView {
   constructor(private readonly studio: Studio, private readonly stage: Stage) {
     this.voxels.frustumCulled = this.candidates.frustumCulled = false;
     this.voxels.visible = this.candidates.visible = false;
+    this.voxels.onBeforeRender = (_renderer, _scene, camera) => {
+      this.voxels.material.size = 1.3 * this.edge * magnified(camera as THREE.PerspectiveCamera);
+    };
     stage.scene.add(this.voxels);
     stage.tools.add(this.candidates);
     studio.on(["world", "episode", "look"], () => this.draw());
@@ -130,7 +134,7 @@ export class ExplorationView {
     this.voxels.geometry = new THREE.BufferGeometry();
     this.voxels.geometry.setAttribute("position", new THREE.BufferAttribute(middles, 3));
     this.voxels.geometry.setAttribute("color", new THREE.BufferAttribute(colors, 3, true));
-    this.voxels.material.size = 1.3 * growth.edge;
+    this.edge = growth.edge;
     this.voxels.visible = true;
     this.grow();
     if (this.fetched !== LIVE) this.studio.tell("standing");

@@ -14,7 +14,7 @@ const FREE = 0.3;          // s from every keyframe, for one between them
 
 export function keyframeHere(studio: Studio, stage: Stage, pick: Pick): void {
   if (studio.map) {
-    studio.session.note("A map is not seen from anywhere: leave it (E) for a keyframe from where you look.");
+    studio.session.note("The map has no camera position. Press E to leave the map, then add the keyframe.");
     return;
   }
   const eye = stage.worldCamera.position;

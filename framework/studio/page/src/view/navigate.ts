@@ -7,7 +7,7 @@ import { viewAt } from "../state/samples";
 import type { Vec3 } from "../state/types";
 import type { Studio } from "../studio";
 import { typing } from "./dom";
-import type { Stage } from "./stage";
+import { DEFAULT_FOV, type Stage } from "./stage";
 
 const SPEED = 8;          // m/s of the virtual camera
 const TURN = 1.1;         // rad/s by the arrows
@@ -16,8 +16,7 @@ const STICK = 1.4;        // rad/s by a stick of a gamepad
 const SLACK = 0.15;       // of a stick, that counts as its middle
 const FILLED = 0.85;      // of the view by a film that is shown whole
 const OUTGROWN = 3;       // of the film's extent against what is shown, to show it whole again
-const DEFAULT_FOV = 55;   // degrees, as stage.ts begins
-const MAP_FOV = 0.1;      // degrees: what stands 30 m high leans by 5 cm at the rim of the view, at most
+const MAP_FOV = 0.1;      // degrees: 30 m of height lean by 2.6 cm at the upper and lower edge
 const NEARBY = 25;        // m
 const held = ["w", "a", "s", "d", "q", "e", "arrowleft", "arrowright", "arrowup", "arrowdown"];
 

@@ -7,6 +7,7 @@ import { colour } from "./dom";
 THREE.ColorManagement.enabled = false;
 
 const FARTHEST = 30000;   // m
+export const DEFAULT_FOV = 55;   // degrees
 const STILL = 250;    // ms without a move, after which all is drawn in full
 
 // Colours as they are written, no curves: what the style sheet says is what is seen.
@@ -30,7 +31,7 @@ export interface Palette {
 export class Stage {
   readonly scene = new THREE.Scene();
   readonly tools = new THREE.Group();         // drawn in the world alone
-  readonly worldCamera = new THREE.PerspectiveCamera(55, 1, 0.3, 4000);
+  readonly worldCamera = new THREE.PerspectiveCamera(DEFAULT_FOV, 1, 0.3, 4000);
   readonly filmCamera = new THREE.PerspectiveCamera(62, 16 / 9, 0.1, 5000);
   palette: Palette;
   frameMs = 0;                                // of the last frame, drawn to its end
@@ -225,11 +226,16 @@ export class Stage {
   }
 }
 
+// How much larger things are through this camera than through the lens that the world begins with.
+// THREE.PointsMaterial makes points smaller by distance, but knows no lens.
+export const magnified = (camera: THREE.PerspectiveCamera): number =>
+  Math.tan((DEFAULT_FOV * Math.PI) / 360) / Math.tan((camera.fov * Math.PI) / 360);
+
 export const level = (height: number): THREE.Plane =>
   new THREE.Plane(new THREE.Vector3(0, 0, 1), -height);
 
-// Where a ray meets a plane; null where it does not, or so far across the ground that it all but
-// looks along it. A map is seen from farther above.
+// Where a ray meets a plane. Null if there is no such place, or if it is more than 30 km away
+// horizontally. Height does not count: the eye of the map is higher.
 export function meeting(ray: THREE.Ray, plane: THREE.Plane): THREE.Vector3 | null {
   const found = ray.intersectPlane(plane, new THREE.Vector3());
   const { x, y } = ray.origin;
