@@ -94,8 +94,8 @@ local function refuse(run, graph, tour, budget)
     .. "the budget", budget, why, graph.candidates, graph.reach, tour.reachable))
 end
 
--- A tour within `budget` seconds by the solver that is asked for, begun with those of others, and the
--- evaluations of all.
+-- A tour within `budget` seconds by the solver that is asked for, begun with those of others, and
+-- the evaluations of all.
 local function solved(run, graph, finish, budget)
   local o = run.options.tour
   local initial, spent = nil, 0

@@ -78,7 +78,8 @@ if(LAPWING_LEARN)
   add_executable(test_learned_torch ${CMAKE_CURRENT_LIST_DIR}/learned_torch/learned_torch_test.cpp
     ${learned}/network.cpp ${learned}/kernels.cpp ${learned}/backpropagation.cpp
     ${learned}/ray_network.cpp ${learned}/grid_trainee.cpp ${learned}/ray_trainee.cpp
-    ${learned}/torch_trainee.cpp ${learned}/model_file.cpp ${learned}/fit.cpp)
+    ${learned}/torch_trainee.cpp ${learned}/torch_networks.cpp ${learned}/model_file.cpp
+    ${learned}/fit.cpp)
   target_compile_definitions(test_learned_torch PRIVATE ${test_definitions})
   target_link_libraries(test_learned_torch PRIVATE lapwing GTest::gtest GTest::gtest_main
     lapwing_torch)

@@ -29,33 +29,40 @@ std::vector<std::vector<std::uint8_t>> grids_of(const NetworkLayout& layout, int
   return grids;
 }
 
-torch::Tensor inputs_of(const NetworkLayout& layout,
-                        const std::vector<std::vector<std::uint8_t>>& grids) {
-  const GridShape& g = layout.shape.grid;
-  std::vector<float> all;
-  for (const auto& grid : grids)
-    for (std::size_t k = 0; k < grid.size(); ++k) {
-      const float v = static_cast<float>(grid[k]) / 255.0f;
-      all.push_back(k % 2 == 0 ? 2 * v - 1 : 1 - v);
-    }
-  return tensor_of(all,
-                   {static_cast<std::int64_t>(grids.size()), g.up, g.ahead, g.across, g.channels()})
-      .permute({0, 4, 1, 2, 3});
+// As the networks read them, one after the other.
+std::vector<float> inputs_of(const NetworkLayout& layout,
+                             const std::vector<std::vector<std::uint8_t>>& grids) {
+  const UnitPlace& first = layout.units.front();
+  const std::size_t each = first.padded() * static_cast<std::size_t>(first.in);
+  std::vector<float> all(grids.size() * each, 0);
+  for (std::size_t n = 0; n < grids.size(); ++n)
+    decode_grid(layout, grids[n].data(), false, all.data() + n * each);
+  return all;
 }
 
 void expect_the_same_answers(const NetworkLayout& layout, const NetworkState& state) {
   const auto grids = grids_of(layout, 24);
-  const torch::NoGradGuard no_gradient;
-  const torch::Tensor theirs = TorchGridNetwork(layout, state).answers(inputs_of(layout, grids));
+  const std::vector<float> theirs = torch_answers(layout, state, inputs_of(layout, grids));
   const FoldedNetwork ours(layout, state);
   double most = 0, spread = 0;
   for (std::size_t n = 0; n < grids.size(); ++n) {
-    const double expected = theirs[static_cast<std::int64_t>(n)].item<double>();
+    const double expected = static_cast<double>(theirs[n]);
     most = std::max(most, std::abs(ours.answer(grids[n].data()) - expected));
-    spread = std::max(spread, std::abs(expected - theirs[0].item<double>()));
+    spread = std::max(spread, std::abs(expected - static_cast<double>(theirs[0])));
   }
   EXPECT_LT(most, 1e-4);
   EXPECT_GT(spread, 0.01) << "all grids are the same to it";
+}
+
+// Derivatives, to 1e-4 of the largest.
+void expect_the_same(const std::vector<float>& ours, const std::vector<float>& theirs) {
+  double scale = 0, most = 0;
+  for (std::size_t k = 0; k < ours.size(); ++k) {
+    scale = std::max(scale, std::abs(static_cast<double>(theirs[k])));
+    most = std::max(most, std::abs(static_cast<double>(ours[k] - theirs[k])));
+  }
+  EXPECT_GT(scale, 0.01);
+  EXPECT_LT(most, 1e-4 * scale);
 }
 
 NetworkState state_with_statistics(const NetworkLayout& layout) {
@@ -105,28 +112,22 @@ TEST_P(LearnedAgainstTorch, LossAndEveryDerivative) {
   std::vector<float> targets;
   for (int n = 0; n < batch; ++n) targets.push_back(static_cast<float>(random.normal()));
 
-  const TorchGridNetwork theirs(layout, state);
-  theirs.parameters().set_requires_grad(true);
-  TorchGridNetwork::Batch drawn;
-  const torch::Tensor loss =
-      theirs.loss(inputs_of(layout, grids), tensor_of(targets, {batch}), lambda, drawn);
-  loss.backward();
-  const torch::Tensor expected = theirs.parameters().grad();
+  BatchOptions options;
+  options.dropout = 0.3;
+  options.regularisation = lambda;
+  options.seed = 5;
+  std::vector<float> expected(layout.parameters, 0), gradient(layout.parameters, 0);
+  NetworkState theirs = state;
+  const double loss =
+      torch_loss(layout, theirs, inputs_of(layout, grids), targets, options, expected);
 
   Backpropagation ours(layout, batch, 2);
   for (int n = 0; n < batch; ++n)
     decode_grid(layout, grids[static_cast<std::size_t>(n)].data(), false, ours.input(n));
-  BatchOptions options;
-  options.dropout = 0;
-  options.regularisation = lambda;
-  std::vector<float> gradient(layout.parameters, 0);
-  const double our_loss = ours.loss(state, targets, options, gradient);
-  EXPECT_NEAR(our_loss, loss.item<double>(), 1e-5 * our_loss);
-  const double scale = expected.abs().max().item<double>();
-  const torch::Tensor difference =
-      (tensor_of(gradient, {static_cast<std::int64_t>(gradient.size())}) - expected).abs();
-  EXPECT_GT(scale, 0.01);
-  EXPECT_LT(difference.max().item<double>(), 1e-4 * scale);
+  EXPECT_NEAR(ours.loss(state, targets, options, gradient), loss, 1e-5 * loss);
+  expect_the_same(gradient, expected);
+  for (std::size_t k = 0; k < state.statistics.size(); ++k)
+    EXPECT_NEAR(state.statistics[k], theirs.statistics[k], 1e-4);
 }
 
 TEST(TorchNetworks, TheShippedModelOfRaysAnswersTheSame) {
@@ -149,19 +150,15 @@ TEST(TorchNetworks, TheShippedModelOfRaysAnswersTheSame) {
     cells[static_cast<std::size_t>(n)].resize(static_cast<std::size_t>(layout.rays()));
     ours.answer(bytes.data(), cells[static_cast<std::size_t>(n)]);
   }
-  const torch::NoGradGuard no_gradient;
-  const torch::Tensor theirs = TorchRayNetwork(layout, model.state.parameters)
-                                   .answers(tensor_of(inputs, {kImages, rays.rows, rays.columns,
-                                                               RayNetworkLayout::kInputs}));
+  const std::vector<float> theirs = torch_answers(layout, model.state.parameters, inputs);
   double most = 0;
-  for (int n = 0; n < kImages; ++n)
-    for (int ray = 0; ray < layout.rays(); ++ray)
-      most = std::max(
-          most, std::abs(theirs[n][ray].item<double>() -
-                         static_cast<double>(
-                             cells[static_cast<std::size_t>(n)][static_cast<std::size_t>(ray)])));
+  for (std::size_t k = 0; k < theirs.size(); ++k)
+    most = std::max(
+        most,
+        std::abs(static_cast<double>(theirs[k] - cells[k / cells[0].size()][k % cells[0].size()])));
   EXPECT_LT(most, 1e-4);
-  EXPECT_GT(theirs.max().item<double>() - theirs.min().item<double>(), 0.1);
+  const auto [least, greatest] = std::minmax_element(theirs.begin(), theirs.end());
+  EXPECT_GT(*greatest - *least, 0.1);
 }
 
 TEST(TorchNetworks, RaysLossAndEveryDerivative) {
@@ -184,22 +181,10 @@ TEST(TorchNetworks, RaysLossAndEveryDerivative) {
                   ours.input(n) + layout.rays() * RayNetworkLayout::kInputs);
     targets.insert(targets.end(), ours.target(n), ours.target(n) + layout.rays());
   }
-  const TorchRayNetwork theirs(layout, parameters);
-  theirs.parameters().set_requires_grad(true);
-  const torch::Tensor loss =
-      theirs.loss(tensor_of(inputs, {kBatch, 5, 7, RayNetworkLayout::kInputs}),
-                  tensor_of(targets, {kBatch, layout.rays()}));
-  loss.backward();
-  const torch::Tensor expected = theirs.parameters().grad();
-  std::vector<float> gradient(layout.parameters, 0);
-  EXPECT_NEAR(ours.loss(parameters, gradient), loss.item<double>(), 1e-5 * loss.item<double>());
-  const double scale = expected.abs().max().item<double>();
-  EXPECT_GT(scale, 0.01);
-  EXPECT_LT((tensor_of(gradient, {static_cast<std::int64_t>(gradient.size())}) - expected)
-                .abs()
-                .max()
-                .item<double>(),
-            1e-4 * scale);
+  std::vector<float> expected(layout.parameters, 0), gradient(layout.parameters, 0);
+  const double loss = torch_loss(layout, parameters, inputs, targets, expected);
+  EXPECT_NEAR(ours.loss(parameters, gradient), loss, 1e-5 * loss);
+  expect_the_same(gradient, expected);
 }
 
 // Both backends: the same draws, so that models differ by rounding alone.
