@@ -70,8 +70,7 @@ class TorchGridNetwork {
     std::vector<torch::Tensor> means, variances;  // are set: of each unit, over the batch
   };
 
-  TorchGridNetwork(const NetworkLayout& layout, const NetworkState& state,
-                   torch::Device device)
+  TorchGridNetwork(const NetworkLayout& layout, const NetworkState& state, torch::Device device)
       : layout_(layout),
         parameters_(state.parameters, device),
         statistics_(state.statistics, device) {}
@@ -178,8 +177,7 @@ void copy_gradient(const torch::Tensor& parameters, std::span<float> gradient) {
   std::copy_n(found.data_ptr<float>(), gradient.size(), gradient.begin());
 }
 
-void follow(std::vector<float>& statistics, std::size_t begin,
-                   const torch::Tensor& found) {
+void follow(std::vector<float>& statistics, std::size_t begin, const torch::Tensor& found) {
   const torch::Tensor here = found.to(torch::kCPU).contiguous();
   for (std::int64_t c = 0; c < here.numel(); ++c) {
     float& kept = statistics[begin + static_cast<std::size_t>(c)];
@@ -190,9 +188,9 @@ void follow(std::vector<float>& statistics, std::size_t begin,
 // [sample, map, z, y, x], without the borders.
 torch::Tensor grids_of(const UnitPlace& first, std::span<const float> padded, std::int64_t count,
                        torch::Device device) {
-  return tensor_of(
-             padded, {count, first.size[2] + 2, first.size[1] + 2, first.size[0] + 2, first.in},
-             device)
+  return tensor_of(padded,
+                   {count, first.size[2] + 2, first.size[1] + 2, first.size[0] + 2, first.in},
+                   device)
       .narrow(1, 1, first.size[2])
       .narrow(2, 1, first.size[1])
       .narrow(3, 1, first.size[0])
@@ -248,9 +246,9 @@ std::vector<float> torch_answers(const NetworkLayout& layout, const NetworkState
   return in_torch([&] {
     const torch::NoGradGuard no_gradient;
     const torch::Device device = device_here();
-    return numbers_of(TorchGridNetwork(layout, state, device)
-                          .answers(grids_of(layout.units.front(), inputs,
-                                            samples_in(layout, inputs), device)));
+    return numbers_of(
+        TorchGridNetwork(layout, state, device)
+            .answers(grids_of(layout.units.front(), inputs, samples_in(layout, inputs), device)));
   });
 }
 
@@ -265,9 +263,9 @@ double torch_loss(const NetworkLayout& layout, NetworkState& state, std::span<co
     TorchGridNetwork::Batch drawn;
     drawn.mask1 = mask_of(options, 0, count, layout.shape.hidden1, device);
     drawn.mask2 = mask_of(options, 1, count, layout.shape.hidden2, device);
-    const torch::Tensor loss = network.loss(grids_of(layout.units.front(), inputs, count, device),
-                                            tensor_of(targets, {count}, device),
-                                            options.regularisation, drawn);
+    const torch::Tensor loss =
+        network.loss(grids_of(layout.units.front(), inputs, count, device),
+                     tensor_of(targets, {count}, device), options.regularisation, drawn);
     loss.backward();
     copy_gradient(network.parameters(), gradient);
     for (std::size_t k = 0; options.keep_statistics && k < layout.units.size(); ++k) {
