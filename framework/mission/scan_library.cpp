@@ -143,9 +143,10 @@ int solve_tour_of_run(lua_State* state) {
   TourRequest request;
   request.seed = run.settings.seed;
   if (given.integer("iterations") > 0) request.iteration_limit = given.integer("iterations");
-  if (run.settings.observe_estimate)
-    request.iteration_limit =
-        std::min(request.iteration_limit.value_or(kEstimateIterations), kEstimateIterations);
+  if (run.settings.observe_estimate) {
+    const std::int64_t most = estimate_iterations(static_cast<std::size_t>(count));
+    request.iteration_limit = std::min(request.iteration_limit.value_or(most), most);
+  }
   if (given.integer("evaluations") > 0) request.evaluation_limit = given.integer("evaluations");
   if (given.has("guard")) request.wall_clock_guard = given.number("guard");
   request.cancellation = run.settings.cancellation;

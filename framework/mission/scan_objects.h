@@ -2,6 +2,7 @@
 // What scan missions hold: what is known of a place, the graph of views made from it, tours.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <span>
@@ -158,8 +159,12 @@ InterestRegion region_of(const Parameters& given);
 ParameterTable pinhole_table();
 Pinhole pinhole_of(const Parameters& given);
 
-// Iterations of a solver where a tour is only estimated, while something is dragged.
-inline constexpr std::int64_t kEstimateIterations = 500;
+// The most iterations of a solver where a tour of so many views is only estimated, while something
+// is dragged: each takes longer the more views there are. Up to 500 views it solves as a plan does.
+inline std::int64_t estimate_iterations(std::size_t views) {
+  constexpr std::int64_t kLeast = 500, kOfAllViews = 1'000'000;
+  return std::max(kLeast, kOfAllViews / static_cast<std::int64_t>(std::max<std::size_t>(views, 1)));
+}
 
 // Of a graph's tours from its home back to it, without a budget. InputError, which names the
 // function, where the graph is of passes.

@@ -117,13 +117,15 @@ TourReport report_of_tour(const TeamReport& team, const TourProblem& problem,
   return report;
 }
 
-TeamRequest team_request(lua_State* state, const MissionRun& run, const Parameters& given) {
+TeamRequest team_request(lua_State* state, const MissionRun& run, const ScanWork& work,
+                         const Parameters& given) {
   TeamRequest request;
   request.limits.seed = run.settings.seed;
   if (given.integer("iterations") > 0) request.limits.iteration_limit = given.integer("iterations");
-  if (run.settings.observe_estimate)
-    request.limits.iteration_limit =
-        std::min(request.limits.iteration_limit.value_or(kEstimateIterations), kEstimateIterations);
+  if (run.settings.observe_estimate) {
+    const std::int64_t most = estimate_iterations(work.graph.candidates.viewpoints.size());
+    request.limits.iteration_limit = std::min(request.limits.iteration_limit.value_or(most), most);
+  }
   if (given.integer("evaluations") > 0)
     request.limits.evaluation_limit = given.integer("evaluations");
   if (given.has("guard")) request.limits.wall_clock_guard = given.number("guard");
@@ -151,7 +153,7 @@ int solve_team_of_run(lua_State* state) {
   const PluginChoice chosen = choice_at(state, 2, "solver");
   TeamObject team;
   team.solver = chosen.type;
-  const TeamRequest request = team_request(state, run, given);
+  const TeamRequest request = team_request(state, run, *work, given);
   const auto solver =
       run.settings.registry->create<TourSolver>(chosen.type, chosen.parameters, "tour.solver");
   {

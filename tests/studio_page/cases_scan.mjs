@@ -148,9 +148,12 @@ export const scan = (browser, shot) => served(browser, shot, {
   await waitRevision(page, next + 6);
   await waitGrade(page, "certified", PLANNED);
   assert.equal((await page.$$("#tour-list .tour")).length, 2);
-  const shown = await page.$eval("#view-words", (e) => e.textContent);
+  // Where the first tour is after a minute, the second is not.
+  const flown = () => page.evaluate(() => JSON.stringify(window.lapwing.onScreen(60)));
+  const other = await flown();
   await page.click('#tour-list [data-key="tour-1"]');
-  await page.waitForFunction((was) => document.querySelector("#view-words").textContent !== was, {}, shown);
+  await page.waitForSelector('#tour-list [data-key="tour-1"][aria-pressed="true"]');
+  await page.waitForFunction((was) => JSON.stringify(window.lapwing.onScreen(60)) !== was, {}, other);
   await picture("scan_07_tours");
   await page.click("#undo");
   await waitRevision(page, next + 7);
