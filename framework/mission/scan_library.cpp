@@ -151,8 +151,12 @@ int solve_tour_of_run(lua_State* state) {
   if (given.has("guard")) request.wall_clock_guard = given.number("guard");
   request.cancellation = run.settings.cancellation;
   request.progress = run.settings.progress;
-  if (lua_getfield(state, 2, "initial") != LUA_TNIL)
-    request.initial = object_argument<TourObject>(state, -1, kTourType).walk;
+  const TourReport* begun = nullptr;
+  if (lua_getfield(state, 2, "initial") != LUA_TNIL) {
+    const TourObject& initial = object_argument<TourObject>(state, -1, kTourType);
+    request.initial = initial.walk;
+    begun = &initial.report;
+  }
   const auto solver =
       run.settings.registry->create<TourSolver>(chosen.type, chosen.parameters, "tour.solver");
   {
@@ -165,6 +169,7 @@ int solve_tour_of_run(lua_State* state) {
     TourResult result = solver->solve(problem, request);
     if (result.report.status == TourStatus::failed) throw PluginError(result.report.message);
     tour.report = result.report;
+    if (begun) take_over_time_limit(*begun, tour.report);
     tour.walk = std::move(result.walk);
     tour.reachable = problem.reachable();
     take_out_pinned(work, {tour.walk}, tour.reachable, tour.report);

@@ -10,6 +10,12 @@
 
 namespace lapwing {
 
+void take_over_time_limit(const TourReport& initial, TourReport& report) {
+  if (initial.status != TourStatus::time_limit || report.status != TourStatus::feasible) return;
+  report.status = TourStatus::time_limit;
+  report.message += "; the time limit ended the tour that it begins with";
+}
+
 std::vector<PursuitView> stops_of(const std::vector<Eigen::Vector3d>& points, const Viewpoint& from,
                                   const Viewpoint& to, const Vehicle& vehicle) {
   constexpr double kTiltShare = 0.9;  // of the gimbal's rate

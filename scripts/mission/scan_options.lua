@@ -181,11 +181,11 @@ local DECLARATIONS = {
       number("budget_metres", nil, "m",
              "flight time as a length at 3 m/s, in place of budget", POSITIVE),
       integer("images", 0, 0, 100000, "largest number of images; 0: any number"),
-      number("guard", 300, "s", "limit of computing time of a solver; a run that it ends may not "
-             .. "repeat", POSITIVE),
+      number("guard", 300, "s", "limit of computing time of each solver; a run that it ends may "
+             .. "not repeat", POSITIVE),
       { name = "begin", type = "text", summary =
         "solver whose tour local_search improves, or none; absent: the better one of cost_benefit "
-        .. "and recursive_greedy" } } },
+        .. "and recursive_greedy; of several tours cost_benefit" } } },
 }
 
 for _, list in ipairs { regions.DECLARATIONS, zones.DECLARATIONS, wishes.DECLARATIONS,

@@ -8,7 +8,7 @@ local OWN_OF_TOUR = { solver = true, budget = true, budget_metres = true, images
 local BUDGET = 300         -- s, where none is given
 local METRES_A_SECOND = 3  -- of a budget in metres (reading 4.6)
 -- Each begins with the tour of the one before, and the better one is kept. Which it is depends on
--- region and budget. Recursive greedy plans one tour.
+-- region and budget. Recursive greedy plans one tour, so that fleets begin with cost_benefit alone.
 local BEGIN = { "cost_benefit", "recursive_greedy" }
 local BEGIN_OF_FLEET = { "cost_benefit" }
 

@@ -29,6 +29,20 @@ TEST(GroundWithout, ASmallRegionIsAsKnownAsALargeOne) {
   EXPECT_EQ(unknown_in(20, 20.7), 0);
 }
 
+TEST(TimeLimit, IsThatOfTheTourThatItBeginsWith) {
+  TourReport initial, found;
+  found.status = TourStatus::feasible;
+  for (const TourStatus status : {TourStatus::feasible, TourStatus::optimal}) {
+    initial.status = status;
+    take_over_time_limit(initial, found);
+    EXPECT_EQ(found.status, TourStatus::feasible);
+  }
+  initial.status = TourStatus::time_limit;
+  take_over_time_limit(initial, found);
+  EXPECT_EQ(found.status, TourStatus::time_limit);
+  EXPECT_NE(found.message.find("time limit"), std::string::npos);
+}
+
 TEST(GroundWithout, WhatLiesBesideTheMeshIsUnknown) {
   EXPECT_NEAR(unknown_in(54, 74), 0.5, 0.06);
   EXPECT_EQ(unknown_in(200, 220), 1);

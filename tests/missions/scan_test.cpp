@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scans end to end: a hut that is made here, flown over, planned on what that showed, and judged.
+#include <regex>
+
 #include "tests/missions/scan_hut.h"
 
 namespace lapwing {
@@ -58,6 +60,32 @@ end
   EXPECT_EQ(plan("blind"), plan());
   EXPECT_EQ(read_file(folder_ / "blind/map.ot"), read_file(folder_ / "out/map.ot"));
   EXPECT_EQ(read_file(folder_ / "blind/prior.ply"), read_file(folder_ / "out/prior.ply"));
+}
+
+// The scores that solvers came to, in the order of the log.
+std::vector<std::pair<std::string, double>> scores_in(const std::string& log) {
+  std::vector<std::pair<std::string, double>> all;
+  const std::regex line(R"((\w+): \w+, score ([0-9.]+), )");
+  for (auto at = std::sregex_iterator(log.begin(), log.end(), line); at != std::sregex_iterator();
+       ++at)
+    all.emplace_back((*at)[1], std::stod((*at)[2]));
+  return all;
+}
+
+TEST_F(Scanning, TheSearchStartsFromTheBetterOfTwoTours) {
+  ASSERT_EQ(run(""), 0) << error();
+  const auto found = scores_in(read_file(folder_ / "out/run.log"));
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found[0].first, "cost_benefit");
+  EXPECT_EQ(found[1].first, "recursive_greedy");
+  EXPECT_EQ(found[2].first, "local_search");
+  EXPECT_GE(found[1].second, found[0].second) << "a better tour to begin with is kept";
+  EXPECT_GE(found[2].second, found[1].second);
+  ASSERT_EQ(run("--set tour.begin=greedy", "hut.lua", "one"), 0) << error();
+  EXPECT_EQ(scores_in(read_file(folder_ / "one/run.log"))[0].first, "greedy");
+  EXPECT_EQ(scores_in(read_file(folder_ / "one/run.log")).size(), 2u);
+  ASSERT_EQ(run("--set tour.begin=none", "hut.lua", "none"), 0) << error();
+  EXPECT_EQ(scores_in(read_file(folder_ / "none/run.log")).size(), 1u);
 }
 
 class SlowScanning : public Scanning {};

@@ -134,7 +134,7 @@ Training::Training(NewTrainee make, const Parameters& p, const FitRequest& reque
   batch_ = static_cast<int>(std::min(static_cast<std::size_t>(batch_), training_.size()));
   network_ = make(p, batch_, request.threads);
   // With libtorch, the result depends on the device and the number of threads as well.
-  asked_.set("backend", network_->backend());
+  asked_.set("computed by", network_->backend());
   model_.mapping = mapping;
   model_.provenance = Value::map();
 }
@@ -162,7 +162,9 @@ void Training::require_same(const Value& checkpoints) const {
     if (key == "epochs" && !cosine_) continue;
     const Value* other = checkpoints.find(key);
     if (other && *other == value) continue;
-    if (!other && key == "backend" && value == Value(kOwnBackend)) continue;  // of an older version
+    // Of older versions.
+    if (!other && (key == "backend" || key == "computed by") && network_->backend() == kOwnBackend)
+      continue;
     throw InputError("--resume: '" + request_.checkpoint.string() + "' was made with another " +
                      key + ": " + (other ? to_json(*other, -1) : "none") + ", not " +
                      to_json(value, -1));
@@ -268,7 +270,7 @@ Value Training::run() {
       from.set("validation_samples", static_cast<std::int64_t>(validation_.size()));
       from.set("epoch", number);
       from.set("seed", static_cast<std::int64_t>(request_.seed));
-      if (network_->backend() != kOwnBackend) from.set("backend", network_->backend());
+      if (network_->backend() != kOwnBackend) from.set("computed by", network_->backend());
       from.set("validation_loss", judged.loss);
       from.set("validation_rho", std::isfinite(judged.rho) ? Value(judged.rho) : Value());
       std::vector<std::string> worlds;
