@@ -10,16 +10,16 @@ cd "$(dirname "$0")/.."
 . scripts/build.sh
 readonly build_budget=600 test_budget=300
 
-# within_budget WHAT SECONDS BUDGET: fails beyond the budget. The budget is larger on a machine that
-# is slower than one with two free cores. With LAPWING_BUDGETS=reported it prints this and
-# continues.
+# within_budget WHAT SECONDS BUDGET: prints what is beyond the budget. Who only wants to know whether
+# the tests pass has other programs on the machine, or a slower one: with LAPWING_BUDGETS=enforced
+# it fails. The budget is larger then on a machine that is slower than one with two free cores.
 within_budget() {
   local slower
   [ "$2" -gt "$3" ] || return 0
   slower=$(bash scripts/machine_speed.sh)
   echo "test.sh: the $1 took $2 s; the budget is $3 s, and this machine is $slower times slower now" \
     "than one with two free cores" >&2
-  [ "${LAPWING_BUDGETS:-}" = reported ] ||
+  [ "${LAPWING_BUDGETS:-}" != enforced ] ||
     awk -v took="$2" -v budget="$3" -v slower="$slower" 'BEGIN { exit !(took <= budget * slower) }'
 }
 
