@@ -160,7 +160,8 @@ ParameterTable pinhole_table();
 Pinhole pinhole_of(const Parameters& given);
 
 // The most iterations of a solver where a tour of so many views is only estimated, while something
-// is dragged: each takes longer the more views there are. Up to 500 views it solves as a plan does.
+// is dragged: each takes longer the more views there are. Up to 500 views these are no fewer than
+// the default of local_search, 2,000.
 inline std::int64_t estimate_iterations(std::size_t views) {
   constexpr std::int64_t kLeast = 500, kOfAllViews = 1'000'000;
   return std::max(kLeast, kOfAllViews / static_cast<std::int64_t>(std::max<std::size_t>(views, 1)));

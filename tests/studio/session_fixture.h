@@ -87,6 +87,18 @@ class Session : public testing::Test {
   void say(HeardPage& page, const char* text) { session_->received(page, text); }
   void say(HeardPage& page, const Value& message) { say(page, to_json(message, -1)); }
 
+  // The script of the question that waits fails so.
+  void fail_script(const std::string& why, int line) {
+    Frame broken;
+    broken.header.set("said", "refused");
+    broken.header.set("serial", checker_.frames.front().header.at("serial"));
+    broken.header.set("why", why);
+    broken.header.set("line", line);
+    broken.header.set("files", Value::list());
+    checker_.frames.clear();
+    session_->heard(WorkerRole::checker, broken);
+  }
+
   // The mission accepts every configuration, or says why not.
   Frame checked(const Frame& asked) const {
     Frame answer;

@@ -28,14 +28,7 @@ TEST_F(Session, ModulesOfTheScriptAreWatched) {
   glance();
   ASSERT_EQ(checker_.frames.size(), 1u);
   // A module that fails: it stays watched.
-  Frame broken;
-  broken.header.set("said", "refused");
-  broken.header.set("serial", checker_.frames.front().header.at("serial"));
-  broken.header.set("why", "part.lua:1: no");
-  broken.header.set("line", 0);
-  broken.header.set("files", Value::list());
-  checker_.frames.clear();
-  session_->heard(WorkerRole::checker, broken);
+  fail_script("part.lua:1: no", 0);
   write_file_atomically(folder_ / "part.lua", "return 3  ");
   glance();
   EXPECT_EQ(checker_.frames.size(), 1u);

@@ -31,14 +31,7 @@ TEST_F(Session, TheEndOfAnErrorIsToldAndAnAnswerIsNone) {
     ASSERT_FALSE(checker_.frames.empty());
   };
   glance_at("return");
-  Frame broken;
-  broken.header.set("said", "refused");
-  broken.header.set("serial", checker_.frames.front().header.at("serial"));
-  broken.header.set("why", "shot.lua:1: no mission");
-  broken.header.set("line", 1);
-  broken.header.set("files", Value::list());
-  checker_.frames.clear();
-  session_->heard(WorkerRole::checker, broken);
+  fail_script("shot.lua:1: no mission", 1);
   EXPECT_EQ(a->last("script_error").at("line"), Value(1));
   say(*a, preview(1, {change("margin", 2)}));
   solve(solver_.frames.back(), "step");

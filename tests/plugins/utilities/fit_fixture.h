@@ -41,6 +41,19 @@ struct TrainingFolder {
   }
 };
 
+// Without samples, of a mapping that is whole.
+inline SampleSet made_set(const std::string& world, const ViewInput& input) {
+  SampleSet set;
+  set.world = world;
+  set.input = input;
+  const PlainMap map{MapSettings{}};
+  EpisodeView known;
+  known.map = &map;
+  set.mapping = mapping_of(known);
+  set.mapping.set("resolution", 0.4);
+  return set;
+}
+
 // Small enough to be trained in a moment.
 inline constexpr GridShape kSmallGrid{8, 4, 4, 1};
 
@@ -48,14 +61,7 @@ inline constexpr GridShape kSmallGrid{8, 4, 4, 1};
 inline void write_grid_samples(const std::filesystem::path& folder, int files, std::uint64_t seed) {
   Random random(seed);
   for (int file = 0; file < files; ++file) {
-    SampleSet set;
-    set.world = "made " + std::to_string(file);
-    set.input = kSmallGrid;
-    const PlainMap map{MapSettings{}};
-    EpisodeView known;
-    known.map = &map;
-    set.mapping = mapping_of(known);
-    set.mapping.set("resolution", 0.4);
+    SampleSet set = made_set("made " + std::to_string(file), kSmallGrid);
     for (int k = 0; k < 64; ++k) {
       const double level = random.uniform();
       std::vector<float> grid;
@@ -88,15 +94,8 @@ struct GridTraining : TrainingFolder {
 inline void write_ray_samples(const std::filesystem::path& folder, int files, std::uint64_t seed) {
   Random random(seed);
   for (int file = 0; file < files; ++file) {
-    SampleSet set;
-    set.world = "made " + std::to_string(seed * 10) + std::to_string(file);
     const RayShape rays{6, 5};
-    set.input = rays;
-    const PlainMap map{MapSettings{}};
-    EpisodeView known;
-    known.map = &map;
-    set.mapping = mapping_of(known);
-    set.mapping.set("resolution", 0.4);
+    SampleSet set = made_set("made " + std::to_string(seed * 10) + std::to_string(file), rays);
     for (int k = 0; k < 64; ++k) {
       std::vector<float> image(rays.size(), 0), cells;
       const double most = random.uniform(0, 5);
