@@ -86,8 +86,7 @@ void change_graph(const ScanWork& before, ScanWork& work, const FreeSpace& space
   if (first < 1)
     throw InputError(
         "no_fly_zones, flight_zones and regions leave none of the places where the tour of the "
-        "plan "
-        "before could begin: let go to plan it, or set start");
+        "plan before could begin: let go to plan it, or set start");
   std::iota(work.pinned.begin(), work.pinned.end(), first);
 }
 

@@ -167,7 +167,8 @@ inline std::int64_t estimate_iterations(std::size_t views) {
   return std::max(kLeast, kOfAllViews / static_cast<std::int64_t>(std::max<std::size_t>(views, 1)));
 }
 
-// What a tour that the clock ended has begun may come out otherwise another time, as that one.
+// A tour that begins with one that the clock ended may come out otherwise another time: its status
+// becomes time_limit as well.
 void take_over_time_limit(const TourReport& initial, TourReport& report);
 
 // Of a graph's tours from its home back to it, without a budget. InputError, which names the

@@ -165,8 +165,10 @@ int solve_team_of_run(lua_State* state) {
     TeamResult result = solver->solve(problem, request);
     if (result.report.status == TourStatus::failed) throw PluginError(result.report.message);
     team.report = result.report;
-    if (request.initial)
+    if (request.initial) {
+      lua_getfield(state, 2, "initial");
       take_over_time_limit(object_argument<TeamObject>(state, -1, kTeamType).report, team.report);
+    }
     team.reachable = problem.reachable();
     take_out_pinned(*work, result.walks, team.reachable, team.report);
     for (std::size_t i = 0; i < result.walks.size(); ++i) {

@@ -197,9 +197,8 @@ WorkerLooks::Kept WorkerLooks::kept_in(const std::string& folder) const {
                                   [&](const Kept& one) { return one.folder == folder; });
   if (found == kept_.end())
     throw InputError(
-        "the map of this plan is no longer held: it is held of the last plans, and of a scan with "
-        "a "
-        "large map of the last one alone; edit the mission to plan it again");
+        "the map of this plan is no longer held. It is held of the last plans, and of a scan "
+        "with a large map of the last one alone. Edit the mission to plan it again");
   return *found;
 }
 
