@@ -54,7 +54,7 @@ ctest --test-dir build/release --output-on-failure --no-tests=error -j 2 "${labe
   status=$?
 took=$((SECONDS - began))
 echo "Tests ran in $took s"
-bash scripts/skipped_tests.sh build/release/Testing/Temporary/LastTest.log
+bash scripts/test_summary.sh build/release/Testing/Temporary/LastTest.log
 [ "$status" -eq 0 ] || exit "$status"
 [ ${#labels[@]} -gt 0 ] || bash scripts/judge.sh
 [ ${#labels[@]} -gt 0 ] || bash scripts/page_test.sh || [ $? -eq 77 ]

@@ -328,12 +328,15 @@ local mission = film.shot { name = "long", hard = 0.01, keyframes = {
 local plan = mission.plan
 mission.plan = function(run)
   local result
-  while not run:cancelled() do result = plan(run) end
+  while not run:cancelled() do
+    result = plan(run)
+    print('planned')
+  end
   return result
 end
 return mission)");
   const pid_t child = start({"run", "shot.lua", "--json"});
-  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  EXPECT_TRUE(speaks());
   ::kill(child, SIGINT);
   const Finished finished = finish(child);
   EXPECT_EQ(finished.status, 130) << finished.err;
@@ -345,10 +348,10 @@ return mission)");
 }
 
 TEST_F(CommandLine, TheSecondCtrlCEndsAtOnce) {
-  write("shot.lua", "while true do end");
+  write("shot.lua", "print('begun') while true do end");
   const pid_t child = start(
       {"run", "shot.lua", "--set", "sandbox.instructions=1e14", "--set", "sandbox.seconds=100"});
-  std::this_thread::sleep_for(std::chrono::milliseconds(1000));
+  EXPECT_TRUE(speaks());
   ::kill(child, SIGINT);
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
   ::kill(child, SIGINT);

@@ -6,7 +6,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
+#include <functional>
+#include <thread>
 
 #include "framework/core/files.h"
 
@@ -59,6 +62,21 @@ class CommandLine : public ::testing::Test {
   }
 
   Finished run(const std::vector<std::string>& arguments) { return finish(start(arguments)); }
+
+  // Waits until something holds; false after a minute, which no busy machine needs.
+  static bool becomes(const std::function<bool()>& holds) {
+    for (int i = 0; i < 3000 && !holds(); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    return holds();
+  }
+
+  // Waits until the started program says something on standard error.
+  bool speaks() const {
+    return becomes([&] {
+      const fs::path errors = folder_ / "stderr.txt";
+      return fs::exists(errors) && fs::file_size(errors) > 0;
+    });
+  }
 
   void write(const std::string& name, const std::string& text) {
     write_file_atomically(folder_ / name, text);

@@ -19,13 +19,8 @@ class Sweeping : public CommandLine {
     for (std::size_t at = 0; (at = text.find(part, at)) != text.npos; at += part.size()) ++count;
     return count;
   }
-  // Waits until a file is there; false after ten seconds.
   static bool appears(const fs::path& file) {
-    for (int i = 0; i < 500; ++i) {
-      if (fs::exists(file)) return true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    }
-    return false;
+    return becomes([&] { return fs::exists(file); });
   }
   // Processes that run this test's sweep.
   int processes_of_runs() const {
@@ -161,9 +156,7 @@ TEST_F(Sweeping, KilledItLeavesNoRunBehind) {
   ASSERT_TRUE(appears(folder_ / "out/sweep/run_002/answer.json"));
   ::kill(child, SIGKILL);
   finish(child);
-  for (int i = 0; i < 100 && processes_of_runs() > 0; ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  EXPECT_EQ(processes_of_runs(), 0);
+  EXPECT_TRUE(becomes([&] { return processes_of_runs() == 0; }));
 }
 
 TEST_F(Sweeping, GoesOnWithWhatIsMissing) {

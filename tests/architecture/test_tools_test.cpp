@@ -165,13 +165,13 @@ TEST(TestTools, WhatOnlyTestsNeedIsNotBuiltWith) {
   EXPECT_TRUE(packages_of("lapwing_fresh_packages").contains("debootstrap"));
 }
 
-// What scripts/skipped_tests.sh makes of a log.
-std::string skipped(const std::string& log) {
+// What scripts/test_summary.sh makes of a log.
+std::string summary(const std::string& log) {
   const fs::path folder =
-      fs::temp_directory_path() / ("lapwing_skip_" + std::to_string(::getpid()));
+      fs::temp_directory_path() / ("lapwing_summary_" + std::to_string(::getpid()));
   fs::create_directories(folder);
   std::ofstream(folder / "log") << log;
-  const std::string command = "bash '" + (kRoot / "scripts/skipped_tests.sh").string() + "' '" +
+  const std::string command = "bash '" + (kRoot / "scripts/test_summary.sh").string() + "' '" +
                               (folder / "log").string() + "' >'" + (folder / "said").string() + "'";
   EXPECT_EQ(std::system(command.c_str()), 0);
   const std::string said = read_file(folder / "said");
@@ -179,10 +179,10 @@ std::string skipped(const std::string& log) {
   return said;
 }
 
-TEST(SkippedTests, AreCountedAndNamedByReason) {
-  EXPECT_EQ(skipped("1/2 Testing: core\n[ RUN      ] A.B\n[       OK ] A.B (0 ms)\n"),
+TEST(TestSummary, CountsAndNamesWhatWasSkippedByReason) {
+  EXPECT_EQ(summary("1/2 Testing: core\n[ RUN      ] A.B\n[       OK ] A.B (0 ms)\n"),
             "No test was skipped\n");
-  EXPECT_EQ(skipped("1/2 Testing: core\n"
+  EXPECT_EQ(summary("1/2 Testing: core\n"
                     "[ RUN      ] Maps.Real\n/x/a.cpp:3: Skipped\nno maps\nin the folder\n\n"
                     "[  SKIPPED ] Maps.Real (0 ms)\n"
                     "[ RUN      ] Maps.Wrong\n/x/a.cpp:4: Failure\nno maps\n\n"
@@ -198,7 +198,23 @@ TEST(SkippedTests, AreCountedAndNamedByReason) {
                     "[  SKIPPED ] Maps.Other (0 ms)\n"),
             "3 tests were skipped:\n"
             "  no maps in the folder\n    Maps.Real\n    Maps.Other\n"
-            "  no meshes\n    Meshes.Real\n");
+            "  no meshes\n    Meshes.Real\n"
+            "1 test failed:\n  Maps.Wrong\n    /x/a.cpp:4: Failure\n    no maps\n");
+}
+
+TEST(TestSummary, NamesTheTestThatAProgramEndedIn) {
+  EXPECT_EQ(summary("1/2 Testing: core\n"
+                    "[ RUN      ] A.Good\n[       OK ] A.Good (1 ms)\n"
+                    "[ RUN      ] A.Crash\n"
+                    "<end of output>\nTest time =   0.20 sec\n-----\nTest Failed.\n"
+                    "2/2 Testing: map\n"
+                    "[ RUN      ] B.Wrong/0\n/x/a.cpp:4: Failure\n"
+                    "[  FAILED  ] B.Wrong/0, where GetParam() = 4 (12 ms)\n"
+                    "[  FAILED  ] 1 test, listed below:\n[  FAILED  ] B.Wrong/0\n"
+                    "<end of output>\nTest time =   0.20 sec\n-----\nTest Failed.\n"),
+            "No test was skipped\n2 tests failed:\n"
+            "  A.Crash\n    the program ended in this test\n"
+            "  B.Wrong/0\n    /x/a.cpp:4: Failure\n");
 }
 
 }  // namespace
