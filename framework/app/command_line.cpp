@@ -54,6 +54,8 @@ void add_run(CLI::App& app, Invocation& invocation, std::filesystem::path& scrip
            "begin from this plan of an earlier run; default: from a guess",
            [&](const std::string& path) { invocation.from = path; });
   run->add_flag("--keep", invocation.keep, "keep an older run in the folder as DIR.1, DIR.2, ...");
+  run->add_flag("--report-data", invocation.report_data,
+                "write report.json too: tables, curves and pictures of the report");
   add_threads(*run, invocation, "threads to use; default: one per core");
   run->add_flag("--quiet", invocation.quiet, "no progress, no summary");
   run->add_flag("--verbose", invocation.verbose, "print failed attempts too");

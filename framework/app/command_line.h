@@ -38,8 +38,9 @@ struct Invocation {
   int threads = 0;  // 0: as many as there are cores
   bool json = false;
   bool quiet = false;
-  bool verbose = false;  // what was tried and came to nothing is said, too
-  bool keep = false;     // an older run in the folder is kept under another name
+  bool verbose = false;      // what was tried and came to nothing is said, too
+  bool keep = false;         // an older run in the folder is kept under another name
+  bool report_data = false;  // a run writes its report as data, too
 
   // Whoever has one may call plugins: from now on they are guarded (app/plugin_guard.h).
   Registry registry() const;

@@ -56,7 +56,7 @@ JudgedRun judge_run(MissionResult& result, bool cancelled, const Judges& judges)
 
 namespace {
 
-std::string fleet_page(const FleetOutcome& outcome, const JudgedRun& judged) {
+Report report_of(const FleetOutcome& outcome, const JudgedRun& judged) {
   const FleetResult& fleet = *outcome.result.fleet;
   Report report = fleet_report(fleet.document, plans_of(fleet), outcome.result.obstacle_folder);
   if (judged.status == "cancelled") {
@@ -70,11 +70,11 @@ std::string fleet_page(const FleetOutcome& outcome, const JudgedRun& judged) {
   for (const std::string& note : all_notes(outcome.result)) findings.text += note + "\n\n";
   if (!findings.text.empty())
     report.sections.insert(report.sections.begin(), Section{"Findings", {findings}});
-  return render_html(report);
+  return report;
 }
 
-void write_files(const FleetOutcome& outcome, const JudgedRun& judged, const Registry& registry,
-                 const logging::Capture& capture) {
+void write_files(const FleetOutcome& outcome, const JudgedRun& judged, const Invocation& invocation,
+                 const Registry& registry, const logging::Capture& capture) {
   const FleetResult& fleet = *outcome.result.fleet;
   RunFiles files;
   const auto exporter = registry.create<Exporter>("csv");
@@ -82,14 +82,14 @@ void write_files(const FleetOutcome& outcome, const JudgedRun& judged, const Reg
     const MissionResult& tour = fleet.tours[t];
     const std::string number = std::to_string(t + 1);
     files.tours.emplace_back("report_" + number + ".html",
-                             report_page(tour, judged.statuses[t], {}));
+                             render_html(report_of(tour, judged.statuses[t], {})));
     files.tours.emplace_back("trajectory_" + number + ".csv", in_plugin(*exporter, "write", [&] {
                                return exporter->write(tour.plan);
                              }));
     files.tours.emplace_back(fleet.document.tours[t].file, judged.texts[t]);
   }
   files.fleet = fleet_text(fleet.document);
-  files.report = fleet_page(outcome, judged);
+  add_report(report_of(outcome, judged), invocation, files);
   logging::info("status " + judged.status);
   for (const std::string& note : all_notes(outcome.result)) logging::info(note);
   for (const Check& check : judged.certificate.failures())
@@ -181,7 +181,7 @@ ExitStatus finish_fleet(const FleetOutcome& outcome, const Invocation& invocatio
                 {.progress = &outcome.progress, .controllers = controllers_of(invocation)});
   outcome.progress.begin("files");
   outcome.progress.report(-1, "");
-  write_files(outcome, judged, registry, capture);
+  write_files(outcome, judged, invocation, registry, capture);
   outcome.progress.clear();
   if (invocation.json) {
     print_json(json_of(outcome, judged, invocation, steady_seconds() - outcome.begin));

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include "framework/app/run_outcome.h"
 #include "framework/app/terminal.h"
 #include "framework/core/visible_text.h"
 #include "framework/export/map_report.h"
@@ -72,13 +73,14 @@ ExitStatus finish_mapping(const MappingOutcome& outcome, const Invocation& invoc
   const std::string status = mapping.cancelled ? "cancelled" : empty ? "failed" : "ok";
   RunFiles files;
   files.map = map_file_bytes(".ot", *mapping.map);
-  files.report = render_html(map_report({.title = outcome.result.plan.mission,
-                                         .plugin = mapping.plugin,
-                                         .source = mapping.source,
-                                         .scans = mapping.scans,
-                                         .map = mapping.map.get(),
-                                         .images = mapping.images,
-                                         .cancelled = mapping.cancelled}));
+  add_report(map_report({.title = outcome.result.plan.mission,
+                         .plugin = mapping.plugin,
+                         .source = mapping.source,
+                         .scans = mapping.scans,
+                         .map = mapping.map.get(),
+                         .images = mapping.images,
+                         .cancelled = mapping.cancelled}),
+             invocation, files);
   logging::info("status " + status);
   files.log = capture.text();
   outcome.target.write(files);

@@ -16,6 +16,7 @@
 #include "framework/core/json.h"
 #include "framework/core/visible_text.h"
 #include "framework/explore/view_utility.h"
+#include "framework/export/report_value.h"
 #include "framework/study/reproduced_table.h"
 
 namespace lapwing {
@@ -27,8 +28,8 @@ fs::path definitions() {
   return shipped_folder("configs") / "reproduce";
 }
 
-// What is written between braces in words of a study: {examples}, {out}, {data:FILE},
-// {model:UTILITY}, {study:NAME}.
+// What is written between braces in words of a study: {examples}, {here} (the folder of the
+// tables), {data:FILE}, {model:UTILITY}, {study:NAME}.
 class Places {
  public:
   Places(const Registry& registry, std::vector<fs::path> data, fs::path studies)
@@ -53,6 +54,7 @@ class Places {
     const std::string kind = text.substr(0, colon);
     const std::string name = colon < text.size() ? text.substr(colon + 1) : "";
     if (kind == "examples") return shipped_folder("examples").string();
+    if (kind == "here") return definitions().string();
     if (kind == "study") return (studies_ / name).string();
     if (kind == "model") {
       const fs::path library = registry_.find(ViewUtility::kKind, name).library;
@@ -129,7 +131,9 @@ class Reproducing {
       if (!fs::exists(answer_of(made_.studies[k].name))) ask(made_.studies[k], words_[k]);
     std::map<RecordSource, Value::List> records;
     for (const RecordSource& source : record_sources(made_)) records[source] = records_of(source);
-    write(reproduced_table(made_, records, caption()));
+    ReproducedTable table = reproduced_table(made_, records, caption());
+    for (const ReproducedPictures& asked : made_.pictures) table.pictures.push_back(drawn(asked));
+    write(table);
     return ExitStatus::done;
   }
 
@@ -203,6 +207,12 @@ class Reproducing {
     return {all};
   }
 
+  Section drawn(const ReproducedPictures& asked) const {
+    const fs::path file = studies() / asked.study / "report.json";
+    const Value report = from_json(read_file(file), file.string());
+    return chosen_pictures(asked, report_from_value(report).sections);
+  }
+
   static Value::List records_in(const fs::path& folder) {
     std::vector<fs::path> files;
     for (const auto& item : fs::directory_iterator(folder))
@@ -221,6 +231,7 @@ class Reproducing {
     for (const std::string& word : words_in(study.command)) all.push_back(word);
     all.insert(all.end(), words.begin(), words.end());
     if (*ways.out) all.insert(all.end(), {ways.out, (studies() / study.name).string()});
+    if (study.command == "run") all.push_back("--report-data");
     if (ways.resumes) all.push_back("--resume");
     if (ways.quiets && invocation_.quiet) all.push_back("--quiet");
     if (invocation_.threads > 0 && ways.resumes)
@@ -264,9 +275,10 @@ class Reproducing {
   void write(const ReproducedTable& table) const {
     const fs::path folder = base_ / folder_name(made_.name);
     const std::string shown = text_of(TextTable{.rows = table_cells(table)}, 100'000);
-    write_files_together(folder, {{{"table.txt", shown + "\n" + table_notes(table)},
-                                   {"table.csv", table_csv(table)},
-                                   {"report.html", render_html(table_report(table))}}});
+    write_files_together(folder,
+                         {{{"table.txt", shown + (shown.empty() ? "" : "\n") + table_notes(table)},
+                           {"table.csv", table_csv(table)},
+                           {"report.html", render_html(table_report(table))}}});
     const std::string report = (folder / "report.html").string();
     if (invocation_.json) {
       Value object = Value::map();
@@ -277,9 +289,9 @@ class Reproducing {
       object.set("report", report);
       print_json(object);
     } else if (!invocation_.quiet) {
-      std::cout << text_of(TextTable{.rows = table_cells(table)}, columns_of_stdout()) << "\n"
-                << visible_text(table_notes(table)) << "\nreport: " << visible_line(report)
-                << std::endl;
+      std::cout << text_of(TextTable{.rows = table_cells(table)}, columns_of_stdout())
+                << (table.cells.empty() ? "" : "\n") << visible_text(table_notes(table))
+                << "\nreport: " << visible_line(report) << std::endl;
     }
   }
 

@@ -124,7 +124,7 @@ void print_summary(const RunOutcome& outcome, bool verbose) {
   std::cout.flush();
 }
 
-void write_files(const RunOutcome& outcome, const Registry& registry,
+void write_files(const RunOutcome& outcome, const Invocation& invocation, const Registry& registry,
                  const logging::Capture& capture) {
   const Plan& plan = outcome.result.plan;
   RunFiles files;
@@ -134,8 +134,9 @@ void write_files(const RunOutcome& outcome, const Registry& registry,
   std::vector<Section> own;
   for (const RunAddition& addition : outcome.additions)
     own.insert(own.end(), addition.sections.begin(), addition.sections.end());
-  files.report = report_page(outcome.result, outcome.status, std::move(own),
-                             viewer_of(outcome.result, outcome.certificate));
+  add_report(report_of(outcome.result, outcome.status, std::move(own),
+                       viewer_of(outcome.result, outcome.certificate)),
+             invocation, files);
   logging::info("status " + outcome.status);
   for (const std::string& note : all_notes(outcome.result)) logging::info(note);
   for (const RunAddition& addition : outcome.additions) {
@@ -189,7 +190,7 @@ ExitStatus run_mission(const std::filesystem::path& script, const Invocation& in
   outcome.status = status_of(outcome.result, outcome.certificate, interruption.token().cancelled());
   complete_plan(outcome.result, outcome.certificate, outcome.status);
   outcome.additions = run_additions(outcome.result, outcome.certificate, interruption.token());
-  write_files(outcome, registry, capture);
+  write_files(outcome, invocation, registry, capture);
   progress.clear();
   outcome.seconds = steady_seconds() - begin;
   if (invocation.json) {

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "framework/core/files.h"
+#include "framework/core/json.h"
 #include "framework/export/flight_report.h"
+#include "framework/export/report_value.h"
 
 namespace lapwing {
 namespace {
@@ -72,8 +74,8 @@ void complete_plan(MissionResult& result, const Certificate& certificate,
   if (status == "cancelled") plan.solver.set("cancelled", true);
 }
 
-std::string report_page(const MissionResult& result, const std::string& status,
-                        std::vector<Section> own, std::optional<Viewer> viewer) {
+Report report_of(const MissionResult& result, const std::string& status, std::vector<Section> own,
+                 std::optional<Viewer> viewer) {
   Report report = flight_report(result.plan, result.obstacle_folder);
   if (status == "cancelled") {
     report.status = "cancelled";
@@ -89,7 +91,12 @@ std::string report_page(const MissionResult& result, const std::string& status,
   for (Section& section : sections_of(result)) own.push_back(std::move(section));
   report.sections.insert(report.sections.begin() + 1, own.begin(), own.end());
   report.viewer = std::move(viewer);
-  return render_html(report);
+  return report;
+}
+
+void add_report(const Report& report, const Invocation& invocation, RunFiles& files) {
+  files.report = render_html(report);
+  if (invocation.report_data) files.report_data = to_json(to_value(report)) + "\n";
 }
 
 void add_obstacles(const MissionResult& result, RunFiles& files) {

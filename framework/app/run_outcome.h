@@ -31,8 +31,11 @@ void complete_plan(MissionResult& result, const Certificate& certificate,
 
 // The report of the plan, once it is complete; `own` come behind its summary. `viewer`: in place of
 // one of its pictures.
-std::string report_page(const MissionResult& result, const std::string& status,
-                        std::vector<Section> own, std::optional<Viewer> viewer = std::nullopt);
+Report report_of(const MissionResult& result, const std::string& status, std::vector<Section> own,
+                 std::optional<Viewer> viewer = std::nullopt);
+
+// report.html and, where it was asked for, report.json.
+void add_report(const Report& report, const Invocation& invocation, RunFiles& files);
 
 // The files that the environment of the plan names.
 void add_obstacles(const MissionResult& result, RunFiles& files);

@@ -3,6 +3,7 @@
 
 #include <charconv>
 
+#include "framework/core/base64.h"
 #include "framework/core/error.h"
 #include "framework/core/markup.h"
 #include "framework/export/report_assets.h"
@@ -17,23 +18,6 @@ const std::vector<std::string>& projection_names() {
 }
 
 namespace {
-
-std::string base64(const std::string& bytes) {
-  static constexpr char kLetters[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const auto byte = [&](std::size_t k) {
-      return i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u;
-    };
-    const unsigned group = byte(0) << 16 | byte(1) << 8 | byte(2);
-    for (int k = 0; k < 4; ++k) {
-      const bool padding = i + static_cast<std::size_t>(k) > bytes.size();
-      out += padding ? '=' : kLetters[group >> (18 - 6 * k) & 63];
-    }
-  }
-  return out;
-}
 
 std::string replaced(std::string text, std::string_view from, std::string_view to) {
   for (std::size_t at = text.find(from); at != std::string::npos;

@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "framework/export/report_value.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "framework/core/base64.h"
 #include "framework/core/fields.h"
 
 namespace lapwing {
 namespace {
+
+constexpr int kMostPixels = 100'000;  // across a frame of a strip
 
 const Value::List& entries(const Value& list) {
   static const Value::List none;
@@ -63,7 +70,8 @@ std::vector<double> numbers(Fields& fields, const char* name, bool required, boo
   return out;
 }
 
-std::vector<Eigen::Vector3d> points(Fields& fields, const char* name) {
+// Where `gaps`, null is one.
+std::vector<Eigen::Vector3d> points(Fields& fields, const char* name, bool gaps) {
   if (!fields.has(name)) fields.add_error(name, "missing");
   const Value list = fields.opaque(name);
   std::vector<Eigen::Vector3d> out;
@@ -71,6 +79,10 @@ std::vector<Eigen::Vector3d> points(Fields& fields, const char* name) {
     fields.add_error(name, "expected a list, got " + list.describe_type());
   }
   for (const Value& entry : entries(list)) {
+    if (gaps && entry.is_null()) {
+      out.push_back(Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
+      continue;
+    }
     const Value::List& triple = entries(entry);
     if (triple.size() != 3 ||
         !std::all_of(triple.begin(), triple.end(), [](const Value& v) { return v.is_number(); })) {
@@ -81,6 +93,12 @@ std::vector<Eigen::Vector3d> points(Fields& fields, const char* name) {
     out.emplace_back(triple[0].as_number(), triple[1].as_number(), triple[2].as_number());
   }
   return out;
+}
+
+// Of a number that a whole number is expected for: -1 where it is none, which no mesh has.
+std::int32_t place_of(double number) {
+  const bool whole = number >= 0 && number <= 1e9 && number == std::floor(number);
+  return whole ? static_cast<std::int32_t>(number) : -1;
 }
 
 Axis axis(Fields fields, bool may_be_logarithmic) {
@@ -128,6 +146,8 @@ Table table_block(Fields& fields) {
         row.cells.emplace_back(cell.as_number());
       } else if (cell.is_text()) {
         row.cells.emplace_back(cell.as_text());
+      } else if (cell.is_null()) {
+        row.cells.emplace_back(std::numeric_limits<double>::quiet_NaN());
       } else {
         f.add_error("cells[" + std::to_string(row.cells.size() + 1) + "]",
                     "expected a text or a number, got " + cell.describe_type());
@@ -166,11 +186,26 @@ Chart chart_block(Fields& fields) {
   return out;
 }
 
+// What is wrong with places of vertices is said with the mesh.
+TriangleMesh surface(Fields& fields) {
+  TriangleMesh mesh;
+  mesh.vertices = points(fields, "vertices", false);
+  for (const auto& corners : fields.rows("triangles", 3))
+    mesh.triangles.push_back({place_of(corners[0]), place_of(corners[1]), place_of(corners[2])});
+  try {
+    check_mesh(mesh, "the surface");
+  } catch (const InputError& error) {
+    fields.add_error("triangles", error.what());
+    return {};
+  }
+  return mesh;
+}
+
 Drawing drawing(Fields& fields) {
   Drawing out;
   for (Fields& f : tables(fields, "lines")) {
-    out.lines.push_back({f.text("name"), points(f, "points"), numbers(f, "along", false, false),
-                         numbers(f, "values", false, true)});
+    out.lines.push_back({f.text("name"), points(f, "points", true),
+                         numbers(f, "along", false, false), numbers(f, "values", false, true)});
     f.finish();
   }
   for (Fields& f : tables(fields, "points")) {
@@ -194,6 +229,10 @@ Drawing drawing(Fields& fields) {
     f.finish();
     out.zones.push_back(std::move(zone));
   }
+  for (Fields& f : tables(fields, "solids")) {
+    out.solids.push_back({f.text("name"), surface(f)});
+    f.finish();
+  }
   if (given(fields, "along")) out.along = axis(fields.table("along"), false);
   if (given(fields, "value")) out.value = axis(fields.table("value"), false);
   return out;
@@ -214,33 +253,14 @@ Scene3D scene_block(Fields& fields) {
   return out;
 }
 
-// Bytes of base64 text (RFC 4648, padded); false when it is none.
-bool decode_base64(const std::string& text, std::string& bytes) {
-  if (text.size() % 4 != 0) return false;
-  const std::size_t padding = text.ends_with("==") ? 2 : text.ends_with("=") ? 1 : 0;
-  unsigned group = 0;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    unsigned digit = 0;
-    if (c >= 'A' && c <= 'Z')
-      digit = static_cast<unsigned>(c - 'A');
-    else if (c >= 'a' && c <= 'z')
-      digit = static_cast<unsigned>(c - 'a') + 26;
-    else if (c >= '0' && c <= '9')
-      digit = static_cast<unsigned>(c - '0') + 52;
-    else if (c == '+')
-      digit = 62;
-    else if (c == '/')
-      digit = 63;
-    else if (c != '=' || i + padding < text.size())
-      return false;
-    group = group << 6 | digit;
-    if (i % 4 != 3) continue;
-    for (int shift = 16; shift >= 0; shift -= 8) bytes += static_cast<char>(group >> shift & 255);
-    group = 0;
+// Of an image or a frame of a strip.
+std::string png_bytes(Fields& fields) {
+  std::optional<std::string> bytes = bytes_of_base64(fields.text("png_base64"));
+  if (!bytes) {
+    fields.add_error("png_base64", "expected the bytes of a PNG file in padded base64");
+    return {};
   }
-  bytes.resize(bytes.size() - padding);
-  return true;
+  return std::move(*bytes);
 }
 
 Image image_block(Fields& fields, const ReadImage& read) {
@@ -250,15 +270,33 @@ Image image_block(Fields& fields, const ReadImage& read) {
     out.png = read(fields.text("file"));
     return out;
   }
-  if (!decode_base64(fields.text("png_base64"), out.png)) {
-    fields.add_error("png_base64", "expected the bytes of a PNG file in padded base64");
+  out.png = png_bytes(fields);
+  return out;
+}
+
+FilmStrip strip_block(Fields& fields) {
+  FilmStrip out;
+  out.title = fields.text("title");
+  for (Fields& f : tables(fields, "frames", true)) {
+    FilmFrame frame;
+    frame.png = png_bytes(f);
+    frame.width = f.integer("width", 1, kMostPixels);
+    frame.height = f.integer("height", 1, kMostPixels);
+    frame.caption = f.text("caption");
+    for (Fields& b : tables(f, "boxes")) {
+      frame.boxes.push_back({b.text("label"), b.number("left"), b.number("top"), b.number("right"),
+                             b.number("bottom")});
+      b.finish();
+    }
+    f.finish();
+    out.frames.push_back(std::move(frame));
   }
   return out;
 }
 
 Block block(Fields& fields, const ReadImage& read_image) {
   static const std::vector<std::string> kTypes = {"text", "facts", "table", "chart",
-                                                  "path", "scene", "image"};
+                                                  "path", "scene", "image", "strip"};
   // With an unknown type every other key would be unknown as well; one error says enough.
   const Value* type = fields.find("type");
   const int index = fields.choice("type", kTypes);
@@ -280,8 +318,10 @@ Block block(Fields& fields, const ReadImage& read_image) {
         return path_block(fields);
       case 5:
         return scene_block(fields);
-      default:
+      case 6:
         return image_block(fields, read_image);
+      default:
+        return strip_block(fields);
     }
   };
   Block out = read();

@@ -12,14 +12,18 @@
 //     path   title, projection (above, from_south, from_east, from_north, from_west), and a drawing
 //     scene  title, and a drawing
 //     image  caption, and png_base64 or, where files may be read, file
+//     strip  title, frames: caption, png_base64, width, height (pixels); boxes: label, left, top,
+//            right, bottom (shares of the frame)
 //   axis     label, unit, whole, logarithmic (of y only)
 //   drawing  lines: name, points (triples), along, values; points: label, position;
 //            spheres: name, center, radius; boxes: name, lower, upper; zones: name, corners
-//            (pairs), floor, ceiling; along, value (axes)
+//            (pairs), floor, ceiling; solids: name, vertices (triples), triangles (triples of
+//            places of vertices, from 0); along, value (axes)
 //   result   none, pass, fail, skipped
 //
 // Required are titles, names, labels, types, text, value, and the numbers of what is drawn; the
-// rest may lack. Units, frames and rules are those of report.h; in y and values null is a gap.
+// rest may lack. Units, frames and rules are those of report.h. In y, in values and between the
+// points of a line, null is a gap; a cell that is null shows as a dash.
 #pragma once
 
 #include <functional>
@@ -34,6 +38,10 @@ namespace lapwing {
 // Throws InputError listing every key that is unknown, missing or of another type, or else the
 // first contradiction that render_html would refuse: what was read can be rendered.
 Report report_from_value(const Value& value);
+
+// The same, as data: reading it again gives a report that renders to the same bytes, but for
+// viewers, which are left out.
+Value to_value(const Report& report);
 
 // The bytes of a file that an image names; throws InputError.
 using ReadImage = std::function<std::string(const std::string& name)>;

@@ -23,9 +23,9 @@ constexpr std::size_t kLongestName = 200;  // most file systems allow 255 bytes
 constexpr int kMostKept = 10000;           // older runs beside one folder
 
 // run.log first: a folder with it is known for a run's. The plan last.
-constexpr const char* kRunFiles[] = {"run.log",     "map.ot",         "long_exposure.png",
-                                     "report.html", "trajectory.csv", "fleet.json",
-                                     "plan.json"};
+constexpr const char* kRunFiles[] = {"run.log",     "map.ot",      "long_exposure.png",
+                                     "report.html", "report.json", "trajectory.csv",
+                                     "fleet.json",  "plan.json"};
 constexpr std::string_view kMissionLine = "info: mission ";
 constexpr std::string_view kSeed = ", seed ";
 
@@ -68,8 +68,8 @@ FileSet set_of(const fs::path& folder, const RunFiles& files) {
   FileSet set{files.obstacles, run_files_in(folder), names_run_file};
   set.files.insert(set.files.end(), files.tours.begin(), files.tours.end());
   const std::optional<std::string>* contents[] = {
-      &files.log,        &files.map,   &files.long_exposure, &files.report,
-      &files.trajectory, &files.fleet, &files.plan};
+      &files.log,         &files.map,        &files.long_exposure, &files.report,
+      &files.report_data, &files.trajectory, &files.fleet,         &files.plan};
   for (std::size_t i = 0; i < std::size(kRunFiles); ++i) {
     const bool listed =
         std::any_of(files.obstacles.begin(), files.obstacles.end(),

@@ -26,6 +26,7 @@ struct RunFiles {
   std::optional<std::string> plan = {};           // plan.json
   std::optional<std::string> trajectory = {};     // trajectory.csv
   std::optional<std::string> report = {};         // report.html
+  std::optional<std::string> report_data = {};    // report.json, as export/report_value.h says
   std::optional<std::string> log = {};            // run.log
   std::optional<std::string> map = {};            // map.ot
   std::optional<std::string> long_exposure = {};  // long_exposure.png

@@ -198,6 +198,20 @@ Chart chart_of(const ReproducedTable& table) {
   return chart;
 }
 
+// What a block is known by in a report: its title or caption, or nothing.
+std::string name_of(const Block& block) {
+  return std::visit(
+      [](const auto& one) -> std::string {
+        if constexpr (requires { one.title; })
+          return one.title;
+        else if constexpr (requires { one.caption; })
+          return one.caption;
+        else
+          return "";
+      },
+      block);
+}
+
 }  // namespace
 
 std::vector<RecordSource> record_sources(const Reproduction& made) {
@@ -234,7 +248,38 @@ ReproducedTable reproduced_table(const Reproduction& made,
   return table;
 }
 
+Section chosen_pictures(const ReproducedPictures& asked, const std::vector<Section>& sections) {
+  const auto nothing = [&](const std::string& what, const std::string& there) {
+    return InputError("study '" + asked.study + "': its report has no " + what + "; there are " +
+                      there);
+  };
+  std::string there;
+  const Section* found = nullptr;
+  for (const Section& section : sections) {
+    there += (there.empty() ? "'" : ", '") + section.title + "'";
+    if (section.title == asked.section) found = &section;
+  }
+  if (!found) throw nothing("section '" + asked.section + "'", there);
+  if (asked.blocks.empty()) return {asked.title, found->blocks};
+  Section chosen{asked.title, {}};
+  for (const std::string& wanted : asked.blocks) {
+    there.clear();
+    std::vector<const Block*> blocks;
+    for (const Block& block : found->blocks) {
+      const std::string name = name_of(block);
+      if (name.starts_with(wanted)) blocks.push_back(&block);
+      if (!name.empty()) there += (there.empty() ? "'" : ", '") + name + "'";
+    }
+    const std::string of = "'" + wanted + "' in its section '" + asked.section + "'";
+    if (blocks.empty()) throw nothing(of, there);
+    if (blocks.size() > 1) throw nothing("single " + of, there);
+    chosen.blocks.push_back(*blocks.front());
+  }
+  return chosen;
+}
+
 std::vector<std::vector<std::string>> table_cells(const ReproducedTable& table) {
+  if (table.cells.empty()) return {};
   std::vector<std::vector<std::string>> rows(1 + table.cells.size());
   rows[0].push_back("");
   for (std::size_t r = 0; r < table.cells.size(); ++r)
@@ -316,21 +361,22 @@ Report table_report(const ReproducedTable& table) {
   Report report;
   report.title = table.made.title;
   report.subtitle = "Thesis: " + table.made.thesis;
-  Table shown_table;
-  shown_table.title = table.made.title;
-  const auto cells = table_cells(table);
-  for (const std::string& title : cells.front()) shown_table.columns.push_back({title, ""});
-  for (std::size_t r = 1; r < cells.size(); ++r) {
-    TableRow row;
-    for (const std::string& cell : cells[r]) row.cells.emplace_back(cell);
-    shown_table.rows.push_back(std::move(row));
+  if (const auto cells = table_cells(table); !cells.empty()) {
+    Table shown_table;
+    shown_table.title = table.made.title;
+    for (const std::string& title : cells.front()) shown_table.columns.push_back({title, ""});
+    for (std::size_t r = 1; r < cells.size(); ++r) {
+      TableRow row;
+      for (const std::string& cell : cells[r]) row.cells.emplace_back(cell);
+      shown_table.rows.push_back(std::move(row));
+    }
+    Section section{"Table", {shown_table}};
+    if (!table.made.chart_axis.empty()) section.blocks.push_back(chart_of(table));
+    report.sections.push_back(std::move(section));
   }
-  Section section{"Table", {shown_table}};
-  if (!table.made.chart_axis.empty()) section.blocks.push_back(chart_of(table));
-  report.sections.push_back(std::move(section));
+  report.sections.insert(report.sections.end(), table.pictures.begin(), table.pictures.end());
   TextBlock notes;
-  notes.text = table_notes(table);
-  notes.preformatted = true;
+  for (const char c : table_notes(table)) notes.text += c == '\n' ? "\n\n" : std::string(1, c);
   report.sections.push_back({"Notes", {notes}});
   return report;
 }

@@ -31,6 +31,7 @@ struct ReproducedTable {
   std::vector<std::vector<ReproducedCell>> cells;    // by row, by column
   std::vector<std::optional<ReproducedCell>> below;  // by row, of `paired`: how far below that row
   std::vector<RankFound> ranks;
+  std::vector<Section> pictures;  // of the report, one for each of `made.pictures`
 };
 
 // Where the records of a cell come from: a study, and the folder of them or "".
@@ -43,7 +44,11 @@ ReproducedTable reproduced_table(const Reproduction& made,
                                  const std::map<RecordSource, Value::List>& records,
                                  std::string caption);
 
-// Rows of cells for a terminal, with titles first.
+// The blocks that are asked for, of the sections of a run's report. InputError naming what is not
+// there, and what is.
+Section chosen_pictures(const ReproducedPictures& asked, const std::vector<Section>& sections);
+
+// Rows of cells for a terminal, with titles first; none of a figure of pictures alone.
 std::vector<std::vector<std::string>> table_cells(const ReproducedTable& table);
 // Captions, ranks and what differs, as lines of text.
 std::string table_notes(const ReproducedTable& table);

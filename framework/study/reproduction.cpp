@@ -155,6 +155,19 @@ void require_studies(const Reproduction& made, const Value& file) {
   }
 }
 
+ReproducedPictures pictures_from(const Value& value, const std::vector<ReproducedStudy>& studies) {
+  const KnownMap given(value, "a picture", {"title", "study", "section", "blocks"});
+  ReproducedPictures pictures{.title = given.need("title").as_text(),
+                              .study = given.need("study").as_text(),
+                              .section = given.need("section").as_text(),
+                              .blocks = {}};
+  for (const Value& block : given.list("blocks")) pictures.blocks.push_back(block.as_text());
+  if (named(studies, pictures.study, "study", value.origin()).command != "run")
+    throw InputError(value.origin(), "study '" + pictures.study +
+                                         "' has no pictures: those of `run` have a report");
+  return pictures;
+}
+
 void add_rest(const KnownMap& given, const Value& file, Reproduction& made) {
   for (const Value& entry : given.list("ranks")) {
     const KnownMap rank(entry, "a rank", {"above", "below", "column"});
@@ -179,6 +192,8 @@ void add_rest(const KnownMap& given, const Value& file, Reproduction& made) {
       if (column.name.find_first_not_of("0123456789.") != column.name.npos)
         throw InputError(file.origin(), "chart: column '" + column.name + "' is not a number");
   }
+  for (const Value& entry : given.list("pictures"))
+    made.pictures.push_back(pictures_from(entry, made.studies));
   for (const Value& sentence : given.list("differs")) made.differs.push_back(sentence.as_text());
 }
 
@@ -238,7 +253,7 @@ Reproduction read_reproduction(const fs::path& folder, const std::string& name) 
   const Value file = from_yaml(text, path.string());
   const KnownMap given(file, "'" + path.string() + "'",
                        {"title", "thesis", "from", "studies", "columns", "rows", "ranks", "paired",
-                        "chart", "differs"});
+                        "chart", "pictures", "differs"});
   Reproduction made;
   made.name = made.owner = name;
   made.title = given.need("title").as_text();
@@ -258,10 +273,13 @@ Reproduction read_reproduction(const fs::path& folder, const std::string& name) 
     for (const auto& [study, value] : given.need("studies").as_map())
       made.studies.push_back(study_from(study, value));
   }
-  for (const Value& column : given.need("columns").as_list())
-    made.columns.push_back(column_from(column));
-  for (const Value& row : given.need("rows").as_list())
-    made.rows.push_back(row_from(row, made.columns.size()));
+  const bool of_pictures = given.find("pictures") && !given.find("columns") && !given.find("rows");
+  if (!of_pictures) {
+    for (const Value& column : given.need("columns").as_list())
+      made.columns.push_back(column_from(column));
+    for (const Value& row : given.need("rows").as_list())
+      made.rows.push_back(row_from(row, made.columns.size()));
+  }
   require_names_once(made.columns, "columns", file);
   require_names_once(made.rows, "rows", file);
   require_studies(made, file);

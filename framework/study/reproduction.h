@@ -14,8 +14,12 @@
 //     - {name: F, unit: "%", figure: with_first/f, scale: 100}
 //   rows:
 //     - {name: NextBestView, where: {method: greedy}, thesis: [79.30]}
+//   pictures:
+//     - {title: The path, study: flight, section: Path, blocks: [Path from above]}
 //   differs: [why figures cannot be compared, one sentence each]
 //
+// Pictures are blocks of the reports of studies whose command is `run`; a figure of pictures alone
+// has neither columns nor rows.
 // `from: "4.3"` in place of `studies` takes those of another file, and shares what they have done.
 #pragma once
 
@@ -71,6 +75,14 @@ struct PairedDifference {
   std::string by;      // "seed"
 };
 
+// Blocks of the report of a study's run.
+struct ReproducedPictures {
+  std::string title;           // above them, in our report
+  std::string study, section;  // whose report, and which of its sections
+  // By what their titles or captions begin with, in this order; empty: the whole section.
+  std::vector<std::string> blocks;
+};
+
 struct Reproduction {
   std::string name;   // of the file: "4.3"
   std::string owner;  // of the file that states the studies: its own name unless it has `from`
@@ -80,6 +92,7 @@ struct Reproduction {
   std::vector<ReproducedRow> rows;
   std::vector<ReproducedRank> ranks;
   std::optional<PairedDifference> paired;
+  std::vector<ReproducedPictures> pictures;
   std::vector<std::string> differs;
   std::string chart_axis, chart_unit;  // not empty: columns are places on this axis, named by it
   std::string checksum;                // SHA-256 of the files that it was read from

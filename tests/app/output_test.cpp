@@ -12,6 +12,7 @@
 #include <random>
 
 #include "framework/core/json.h"
+#include "framework/export/report_value.h"
 #include "tests/app/program_fixture.h"
 
 namespace lapwing {
@@ -167,6 +168,18 @@ TEST_F(OutputTest, WhatNoRunWroteIsNotLost) {
   EXPECT_EQ(run({"run", "shot.lua", "-o", "other"}).status, 0);
   EXPECT_EQ(run({"run", "shot.lua", "-o", "other"}).status, 0);
   EXPECT_EQ(names_in("other").size(), kRunFiles.size() + 2);
+}
+
+// report.json says what report.html shows; a run without it leaves none of an older run.
+TEST_F(OutputTest, TheReportIsWrittenAsDataWhenAskedFor) {
+  write("shot.lua",
+        film("name = 'shot', subject = { position = {2, 6, 1}, height = 2, width = 1 }"));
+  ASSERT_EQ(run({"run", "shot.lua", "--report-data"}).status, 0);
+  const std::string data = read_file(folder_ / "out/shot/report.json");
+  const Report report = report_from_value(from_json(data, "report.json"));
+  EXPECT_EQ(render_html(report), read_file(folder_ / "out/shot/report.html"));
+  ASSERT_EQ(run({"run", "shot.lua"}).status, 0);
+  EXPECT_EQ(names_in("out/shot"), kRunFiles);
 }
 
 TEST_F(OutputTest, TwoRunsIntoOneNewFolder) {

@@ -104,6 +104,45 @@ TEST_F(Reproduce, GoesOnWithWhatIsThereAndOnlyWithTheSame) {
             std::string::npos);
 }
 
+TEST_F(Reproduce, AFigureShowsPicturesOfItsRuns) {
+  for (const char* name : {"configs/vehicles", "configs/cameras"})
+    fs::copy(fs::path(LAPWING_SOURCE_DIR) / name, home_ / name);
+  write_file_atomically(home_ / "configs/reproduce/hop.lua", film("name = 'hop'"));
+  write_table(R"(
+title: A hop
+thesis: figure 9.1
+studies:
+  hop: {command: run, arguments: ["{here}/hop.lua"]}
+  fast: {command: run, arguments: ["{here}/hop.lua"], options: {set: duration=6}}
+pictures:
+  - {title: The path, study: hop, section: Path, blocks: [Path from above]}
+  - {title: How fast, study: fast, section: Motion, blocks: [Speed across]}
+differs: [Hops are others.]
+)");
+  const Finished made = reproduce({"9.1"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_EQ(made.out.rfind("A hop (figure 9.1).\n", 0), 0u) << made.out;
+  const fs::path folder = folder_ / "out/reproduce/9.1";
+  const std::string page = read_file(folder / "report.html");
+  for (const char* part : {"The path", "Path from above", "How fast", "Speed across"})
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  EXPECT_EQ(page.find("Path from the south"), std::string::npos);
+  EXPECT_TRUE(fs::exists(folder / "hop/plan.json"));
+  // A picture that is not there.
+  write_table(R"(
+title: A hop
+thesis: figure 9.1
+studies:
+  hop: {command: run, arguments: ["{here}/hop.lua"]}
+pictures: [{title: The path, study: hop, section: Way}]
+)");
+  const Finished wrong = reproduce({"9.1", "-o", "wrong"});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.err.find("study 'hop': its report has no section 'Way'; there are 'Summary'"),
+            std::string::npos)
+      << wrong.err;
+}
+
 TEST_F(Reproduce, IsNoCommandForMpirun) {
   ::setenv("OMPI_COMM_WORLD_SIZE", "2", 1);
   for (const char* rank : {"0", "1"}) {

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "framework/core/json.h"
+#include "framework/export/report_value.h"
 #include "framework/study/reproduction.h"
 #include "tests/missions/flown_film.h"
 
@@ -157,6 +158,31 @@ TEST_F(Reproduced, EveryArchitectureIsTrainedAndJudged) {
   for (const auto& [place, value] : found)
     if (place.first.starts_with("loss") && place.second == "W2 (downtown)") losses.insert(value);
   EXPECT_EQ(losses.size(), 10u);
+}
+
+TEST_F(Reproduced, FiguresShowTheirPictures) {
+  for (const char* name : {"3.4", "3.5", "3.6", "3.7", "3.8", "3.10", "5.4", "5.5", "5.6", "5.7"}) {
+    const std::string figure = std::string("figure_") + name;
+    const Value made = table(figure);
+    const std::string page = read_file(made.at("report").as_text());
+    for (const ReproducedPictures& pictures : read_reproduction(kTables, figure).pictures)
+      for (const std::string& block : pictures.blocks)
+        EXPECT_NE(page.find(block), std::string::npos) << figure << ": " << block;
+  }
+  // The paths of figure 3.4 keep to the keyframes alike; the smooth one has less acceleration.
+  const auto most = [&](const std::string& study) {
+    const fs::path file = folder_ / "figure_3.4_quick" / study / "report.json";
+    double largest = 0;
+    for (const Section& section :
+         report_from_value(from_json(read_file(file), file.string())).sections)
+      for (const Block& block : section.blocks)
+        if (const Chart* chart = std::get_if<Chart>(&block);
+            chart && chart->title == "Acceleration across")
+          for (const double y : chart->series.at(0).y) largest = std::max(largest, y);
+    return largest;
+  };
+  EXPECT_GT(most("smooth"), 0);
+  EXPECT_LT(most("smooth"), 0.7 * most("keyframes"));
 }
 
 TEST_F(Reproduced, RealMeshes) {
