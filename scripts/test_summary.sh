@@ -13,11 +13,25 @@ awk '
     names[reason] = names[reason] "\n    " name
     ++total
   }
-  function failed(name) {
-    failures[++count_of_failures] = "  " name (said_by_test == "" ? "\n    no message" : said_by_test)
+  function failed(name, said) {
+    failures[++count_of_failures] = "  " name (said == "" ? "\n    no message" : said)
+    ++named
+  }
+  function last_lines(   k, text) {
+    for (k = printed > 5 ? printed - 4 : 1; k <= printed; ++k) text = text "\n      " output[k]
+    return text == "" ? "" : "; its last lines:" text
   }
   # ctest: a heading per test; a test that is no program of GoogleTest is skipped as a whole.
-  /^[0-9]+\/[0-9]+ Test(ing)?: / { whole = $0; sub(/^[^:]*: /, "", whole); running = "" }
+  /^[0-9]+\/[0-9]+ Test(ing)?: / {
+    whole = $0
+    sub(/^[^:]*: /, "", whole)
+    running = said_by_test = ""
+    named = printed = inside = 0
+  }
+  /^Command: ""$/ { failed(whole, "\n    its program is not there") }
+  /^Output:$/ { inside = 1; next }
+  /^<end of output>/ { inside = complaining = 0 }
+  inside && !/^$/ && !/^[-[]/ { output[++printed] = substr($0, 1, 300) }
   /^Test (was )?skipped|^Test Skipped\.?$|^Skipped: / { said = $0; sub(/^[^:]*: /, "", said); note(whole, said) }
   # GoogleTest: the place and the reason, then the name.
   /^\[ RUN      \] / { running = $4; reason = ""; taking = 0; lines = 0; said_by_test = "" }
@@ -28,18 +42,20 @@ awk '
     complaining = 0
     running = ""
     sub(/,$/, "", $4)  # of a parameterised test
-    failed($4)
+    failed($4, said_by_test)
   }
-  # A program that was ended from outside, or crashed, names no test that failed.
-  /^Test Failed/ && running != "" {
-    said_by_test = said_by_test "\n    the program ended in this test"
-    failed(running)
+  # A program that crashed, was ended from outside, or is none of GoogleTest names no test that failed.
+  /^Test (Failed|Timeout)/ {
+    if (running != "")
+      failed(running, said_by_test "\n    " whole " ended in this test" last_lines())
+    else if (named == 0)
+      failed(whole, "\n    it failed" last_lines())
     running = ""
   }
   /: Failure$/ { complaining = 1 }
-  /^$/ { taking = 0; complaining = 0 }
+  /^$/ { taking = 0 }
   taking { reason = reason (reason == "" ? "" : " ") $0 }
-  complaining && ++lines <= 12 { said_by_test = said_by_test "\n    " substr($0, 1, 300) }
+  complaining && !/^$/ && ++lines <= 12 { said_by_test = said_by_test "\n    " substr($0, 1, 300) }
   END {
     if (total == 0) print "No test was skipped"
     else printf "%d test%s skipped:\n", total, total == 1 ? " was" : "s were"

@@ -6,11 +6,13 @@
 #include <iostream>
 
 #include "framework/app/child_command.h"
+#include "framework/app/input_checksums.h"
 #include "framework/app/interruption.h"
 #include "framework/app/item_command.h"
 #include "framework/app/mission_loading.h"
 #include "framework/app/text_table.h"
 #include "framework/config/shipped.h"
+#include "framework/core/checksum.h"
 #include "framework/core/file_set.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
@@ -23,6 +25,8 @@ namespace lapwing {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::size_t kLargestFile = std::size_t{4} << 30;  // bytes, of data that a study reads
 
 fs::path definitions() {
   return shipped_folder("configs") / "reproduce";
@@ -61,6 +65,12 @@ class Places {
       return (library.parent_path() / (name + ".model")).string();
     }
     if (kind == "data") return data_file(name);
+    const bool a_word =
+        !text.empty() && text.find_first_not_of("abcdefghijklmnopqrstuvwxyz_") == text.npos;
+    if (a_word)
+      throw InputError("no place {" + text +
+                       "}: there are {examples}, {here}, {data:FILE}, {model:UTILITY} and "
+                       "{study:NAME}");
     return "{" + text + "}";  // a table of YAML's, such as --set region={...}
   }
 
@@ -94,14 +104,15 @@ struct CommandWays {
   const char* out;  // "": nowhere
   bool resumes;
   bool quiets;
+  bool threads;
 };
-constexpr CommandWays kCommands[] = {{"evaluate scan", "--out", true, true},
-                                     {"evaluate explore", "--out", true, true},
-                                     {"train dataset", "--output", true, true},
-                                     {"train fit", "--output", true, true},
-                                     {"train score", "", false, false},
-                                     {"run", "--out", false, true},
-                                     {"tour", "", false, false}};
+constexpr CommandWays kCommands[] = {{"evaluate scan", "--out", true, true, true},
+                                     {"evaluate explore", "--out", true, true, true},
+                                     {"train dataset", "--output", true, true, true},
+                                     {"train fit", "--output", true, true, true},
+                                     {"train score", "", false, false, false},
+                                     {"run", "--out", false, true, true},
+                                     {"tour", "", false, false, false}};
 
 const CommandWays& ways_of(const ReproducedStudy& study) {
   std::string all;
@@ -133,6 +144,7 @@ class Reproducing {
     for (const RecordSource& source : record_sources(made_)) records[source] = records_of(source);
     ReproducedTable table = reproduced_table(made_, records, caption());
     for (const ReproducedPictures& asked : made_.pictures) table.pictures.push_back(drawn(asked));
+    table.warnings = outcomes();
     write(table);
     return ExitStatus::done;
   }
@@ -159,6 +171,22 @@ class Reproducing {
                      "; name the folder that has them by --data DIR or LAPWING_DATA");
   }
 
+  // Of the files that the words of the studies name: missions, with modules of theirs, and data.
+  Value checksums_of_files() const {
+    Value sums = Value::map();
+    for (const std::vector<std::string>& words : words_)
+      for (const std::string& word : words) {
+        const fs::path file = word.substr(0, word.find('@'));  // FILE@X,Y,Z of worlds
+        std::error_code code;
+        if (!fs::is_regular_file(file, code)) continue;
+        if (file.extension() == ".lua")
+          add_script_checksums(file, file.parent_path(), sums);
+        else
+          sums.set(file.filename().string(), sha256(read_file(file, kLargestFile)));
+      }
+    return sums;
+  }
+
   // All in a folder is of one version.
   void claim_version() const {
     Value stated = Value::map();
@@ -166,9 +194,11 @@ class Reproducing {
     stated.set("program", std::string("lapwing ") + program_version());
     stated.set("table", made_.owner);
     stated.set("quick", asked_.quick);
-    const Reproduction owner =
-        made_.owner == made_.name ? made_ : read_reproduction(definitions(), made_.owner);
-    stated.set("definition", owner.checksum);
+    stated.set("studies", made_.checksum_of_studies());
+    stated.set("files", checksums_of_files());
+    stated.set("scripts", checksum_of_folder(shipped_folder("scripts")));
+    stated.set("configs", checksum_of_folder(shipped_folder("configs"), {"reproduce"}));
+    stated.set("plugins", sha256(to_json(plugin_checksums(registry_))));
     const fs::path file = studies() / "reproduction.json";
     if (!fs::exists(file)) {
       if (fs::exists(studies()) && !fs::is_empty(studies()))
@@ -234,7 +264,7 @@ class Reproducing {
     if (study.command == "run") all.push_back("--report-data");
     if (ways.resumes) all.push_back("--resume");
     if (ways.quiets && invocation_.quiet) all.push_back("--quiet");
-    if (invocation_.threads > 0 && ways.resumes)
+    if (invocation_.threads > 0 && ways.threads)
       all.insert(all.end(), {"--threads", std::to_string(invocation_.threads)});
     const bool has_json = study.command != "train dataset";
     if (has_json) all.push_back("--json");
@@ -244,7 +274,9 @@ class Reproducing {
     const auto begun = std::chrono::steady_clock::now();
     const ChildAnswer said = run_child(all, interruption_.token());
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begun;
-    Value object = has_json ? from_json(said.output, "study " + study.name) : Value::map();
+    const bool silent = said.status > 1 && said.output.empty();  // it said why on standard error
+    Value object =
+        has_json && !silent ? from_json(said.output, "study " + study.name) : Value::map();
     const Value* error = object.find("error");
     if (said.status > 1 || error)
       throw InputError("study '" + study.name + "' of " + made_.thesis + ": " +
@@ -254,6 +286,21 @@ class Reproducing {
                                   std::to_string(said.status)));
     if (object.is_map()) object.set("wall_seconds", taken.count());
     write_file_atomically(answer_of(study.name), to_json(object) + "\n");
+  }
+
+  // Of runs that are not certified.
+  std::vector<std::string> outcomes() const {
+    std::vector<std::string> sentences;
+    for (const ReproducedStudy& study : made_.studies) {
+      if (study.command != "run") continue;
+      const fs::path file = answer_of(study.name);
+      const Value answer = from_json(read_file(file), file.string());
+      const Value* status = answer.find("status");
+      if (!status || !status->is_text() || status->as_text() == "ok") continue;
+      sentences.push_back("The plan of study '" + study.name +
+                          "' is not certified: its status is '" + status->as_text() + "'.");
+    }
+    return sentences;
   }
 
   // What was run, and what a quick look leaves out.
@@ -269,6 +316,10 @@ class Reproducing {
       }
       text.back() = '.';
     }
+    const bool smaller =
+        std::any_of(made_.studies.begin(), made_.studies.end(),
+                    [](const ReproducedStudy& study) { return !study.quick.as_map().empty(); });
+    if (asked_.quick && !smaller) text += " There is no quicker version: this is the whole.";
     return text;
   }
 
@@ -310,13 +361,19 @@ ExitStatus list_reproductions(const Invocation& invocation) {
   const fs::path folder = definitions();
   Value list = Value::list();
   TextTable table{.rows = {{"name", "thesis", "title"}}};
+  std::string errors;
   for (const std::string& name : reproduction_names(folder)) {
-    const Reproduction made = read_reproduction(folder, name);
-    table.rows.push_back({name, made.thesis, made.title});
     Value entry = Value::map();
     entry.set("name", name);
-    entry.set("thesis", made.thesis);
-    entry.set("title", made.title);
+    try {
+      const Reproduction made = read_reproduction(folder, name);
+      table.rows.push_back({name, made.thesis, made.title});
+      entry.set("thesis", made.thesis);
+      entry.set("title", made.title);
+    } catch (const InputError& error) {  // the others are listed all the same
+      errors += std::string(errors.empty() ? "" : "\n") + error.what();
+      entry.set("error", error.what());
+    }
     list.push_back(std::move(entry));
   }
   if (invocation.json) {
@@ -326,7 +383,10 @@ ExitStatus list_reproductions(const Invocation& invocation) {
   } else {
     std::cout << text_of(table, columns_of_stdout());
   }
-  return ExitStatus::done;
+  if (errors.empty()) return ExitStatus::done;
+  std::cout.flush();
+  std::cerr << "lapwing: " << visible_text(errors) << std::endl;
+  return ExitStatus::bad_input;
 }
 
 ExitStatus reproduce_table(const ReproduceRequest& asked, const Invocation& invocation) {
@@ -337,7 +397,11 @@ ExitStatus reproduce_table(const ReproduceRequest& asked, const Invocation& invo
         " processes, but each study of a table is a command in a process of its own; start it "
         "without mpirun, and use --threads");
   }
-  if (asked.table == "list") return list_reproductions(invocation);
+  if (asked.table == "list") {
+    if (asked.quick || asked.resume)
+      throw InputError("reproduce list: --quick and --resume are for tables");
+    return list_reproductions(invocation);
+  }
   return Reproducing(asked, invocation).run();
 }
 

@@ -17,7 +17,8 @@ struct ReproduceRequest {
 // Runs the studies that configs/reproduce/TABLE.yaml states, each by its command in a process of
 // its own, and writes table.txt, table.csv and report.html into OUT/TABLE. Every study has a folder
 // there, or with `from` in that of the other table; its answer is a file beside it. All of it is of
-// one version of the program and of the file, which reproduction.json states.
+// one version of the program and its plugins, of the studies, and of the scripts, configurations
+// and data that they read, which reproduction.json states.
 //
 // InputError for an unknown table, for data that are not there (all named before anything runs),
 // for a folder of an earlier reproduction without `resume`, and for one of another version.

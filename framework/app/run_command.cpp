@@ -46,6 +46,8 @@ Value json_of(const RunOutcome& outcome, const Invocation& invocation) {
   object.set("kind", result.plan.kind);
   object.set("status", outcome.status);
   object.set("plan", (outcome.target.folder() / "plan.json").string());
+  if (invocation.report_data)
+    object.set("report_data", (outcome.target.folder() / "report.json").string());
   outcome.target.add_to(object);
   object.set("seed", static_cast<std::int64_t>(invocation.seed));
   Value& seconds = object.set("seconds", Value::map());

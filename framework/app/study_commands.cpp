@@ -214,9 +214,10 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
   add_text(*all, "-o,--output", "PATH", "the model's file", [&](const std::string& path) {
     request.target = path;
   })->required();
-  add_text(*all, "--hours", "H",
-           "share of the recipe's seeds, as hours of those that it states; default: all",
-           [&](const std::string& text) { request.hours = read_number("--hours", text); });
+  add_text(
+      *all, "--hours", "H",
+      "about how long to train: takes the fraction H / `hours` of the recipe's seeds; default: all",
+      [&](const std::string& text) { request.hours = read_number("--hours", text); });
   add_text(*all, "--recipe", "FILE", "another recipe; default: that of the utility",
            [&](const std::string& path) { request.recipe = path; });
   add_repeated(*all, "--mapping", "KEY=VALUE", request.mapping, kMappingHelp);
@@ -243,8 +244,8 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
 
 void add_evaluate_explore(CLI::App& evaluate, Invocation& invocation, ExploreEvaluation& request,
                           Command& command) {
-  CLI::App* made = evaluate.add_subcommand(
-      "explore", "compare utilities with the oracle (thesis, table 5.1 and later)");
+  CLI::App* made =
+      evaluate.add_subcommand("explore", "compare utilities with the oracle (thesis, table 5.2)");
   add_repeated(*made, "--world", "NAME[:FIRST-LAST]", request.worlds, kWorldHelp);
   add_repeated(*made, "--utility", "NAME", request.utilities,
                "a utility to compare; repeatable; default: all");

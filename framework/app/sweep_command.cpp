@@ -7,6 +7,7 @@
 #include <regex>
 #include <set>
 
+#include "framework/app/input_checksums.h"
 #include "framework/app/mission_loading.h"
 #include "framework/app/progress_line.h"
 #include "framework/app/sweep_inputs.h"
@@ -28,48 +29,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string checksum_of_folder(const fs::path& folder) {
-  std::set<fs::path> files;
-  for (const auto& item : fs::recursive_directory_iterator(folder))
-    if (item.is_regular_file()) files.insert(item.path());
-  std::string all;
-  for (const fs::path& file : files)
-    all += file.lexically_relative(folder).string() + " " + sha256(read_file(file)) + "\n";
-  return sha256(all);
-}
-
-// The script, and its own modules as far as their names are written out.
-void add_checksums(const fs::path& script, const fs::path& folder, Value& sums) {
-  const std::string text = read_file(script);
-  sums.set(script.lexically_relative(folder).string(), sha256(text));
-  static const std::regex required("require\\s*\\(?\\s*[\"']([A-Za-z0-9_.]+)[\"']");
-  for (std::sregex_iterator at(text.begin(), text.end(), required), end; at != end; ++at) {
-    std::string name = (*at)[1];
-    std::replace(name.begin(), name.end(), '.', '/');
-    const fs::path module = folder / (name + ".lua");
-    std::error_code code;
-    if (fs::is_regular_file(module, code) && !sums.find(module.lexically_relative(folder).string()))
-      add_checksums(module, folder, sums);
-  }
-}
-
 template <class Texts>
 Value list_of(const Texts& texts) {
   Value list = Value::list();
   for (const auto& text : texts) list.push_back(fs::path(text).string());
   return list;
-}
-
-// Of the libraries that a run may load, by kind and name.
-Value plugin_checksums(const Registry& registry) {
-  std::map<fs::path, std::string> sums;
-  Value value = Value::map();
-  for (const PluginEntry& entry : registry.entries()) {
-    std::string& sum = sums[entry.library];
-    if (sum.empty()) sum = sha256(read_file(entry.library));
-    value.set(entry.kind + " " + entry.name, sum);
-  }
-  return value;
 }
 
 // All that the runs are made of but the files that they read as they go: those are in
@@ -82,8 +46,8 @@ Value statement_of(const Sweep& asked, const Invocation& invocation, const Regis
   value.set("script", asked.script.string());
   fs::path folder = asked.script.parent_path();
   if (folder.empty()) folder = ".";
-  add_checksums(folder / asked.script.filename(), folder,
-                value.set("scripts_sha256", Value::map()));
+  add_script_checksums(folder / asked.script.filename(), folder,
+                       value.set("scripts_sha256", Value::map()));
   value.set("shipped_scripts", checksum_of_folder(shipped_folder("scripts")));
   value.set("shipped_configs", checksum_of_folder(shipped_folder("configs")));
   ConfigSearch search;

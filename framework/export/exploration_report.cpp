@@ -139,14 +139,14 @@ Section grids(const ExplorationRecord& record) {
     const auto add = [&](const std::vector<Picture>& pictures, const char* what) {
       FilmStrip strip;
       strip.title = std::string(what) + ", " + std::to_string(grid.points) +
-                    " points along an edge: a slice at the height of the camera, which looks up; "
-                    "black is 0, white is 1";
+                    " points along an edge: a slice at the height of the camera, with the view "
+                    "direction up; black is 0, white is 1";
       for (std::size_t level = 0; level < pictures.size(); ++level) {
         const Picture picture = enlarged(pictures[level], kSlicePixels);
         strip.frames.push_back({encode_png(picture),
                                 picture.width,
                                 picture.height,
-                                "level " + std::to_string(level + 1) + ", " +
+                                "scale " + std::to_string(level + 1) + ", " +
                                     number_text(grid.edges[level], 3) + " m across",
                                 {}});
       }

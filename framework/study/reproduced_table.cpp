@@ -35,6 +35,20 @@ const Value* at_place(const Value& record, const std::string& place) {
   return value;
 }
 
+// Whether a record may have something there: in a list that is shorter, another record may.
+bool may_have(const Value& record, const std::string& place) {
+  const Value* value = &record;
+  for (std::size_t begin = 0; begin <= place.size();) {
+    const std::size_t end = std::min(place.find('/', begin), place.size());
+    if (value->is_list()) return true;
+    value = value->find(place.substr(begin, end - begin));
+    if (!value) return false;
+    if (value->is_null()) return true;
+    begin = end + 1;
+  }
+  return true;
+}
+
 bool fits(const Value& record, const Value& where) {
   for (const auto& [place, wanted] : where.as_map()) {
     const Value* found = at_place(record, place);
@@ -70,6 +84,17 @@ class Assembly {
  public:
   Assembly(const Reproduction& made, const std::map<RecordSource, Value::List>& records)
       : made_(made), records_(records) {}
+
+  // A place that no record has is a mistake of the table.
+  void require_places() const {
+    for (const ReproducedRow& row : made_.rows)
+      for (const ReproducedColumn& column : made_.columns) {
+        const RecordSource source = source_of(made_, row, column);
+        require(source, join_places(column.figure, row.figure));
+        for (const Value* where : {&row.where, &column.where})
+          for (const auto& [place, wanted] : where->as_map()) require(source, place);
+      }
+  }
 
   // The figure of every record of a cell, and the record.
   RecordFigures figures(const ReproducedRow& row, const ReproducedColumn& column) const {
@@ -112,6 +137,18 @@ class Assembly {
   }
 
  private:
+  void require(const RecordSource& source, const std::string& place) const {
+    const Value::List& all = records_.at(source);
+    for (const Value& record : all)
+      if (may_have(record, place)) return;
+    if (all.empty()) return;
+    std::string there;
+    for (const auto& [key, value] : all.front().as_map())
+      there += (there.empty() ? "" : ", ") + key;
+    throw InputError("table " + made_.name + ": no record of study '" + source.first + "' has '" +
+                     place + "'; the first has " + there);
+  }
+
   const Reproduction& made_;
   const std::map<RecordSource, Value::List>& records_;
 };
@@ -173,12 +210,14 @@ Value to_value(const ReproducedCell& cell) {
 }
 
 std::string rank_sentence(const RankFound& found) {
-  const bool known = std::isfinite(found.above) && std::isfinite(found.below);
-  return "'" + found.rank.above + "' is above '" + found.rank.below + "' in " + found.rank.column +
-         " in the thesis; here " +
-         (known ? std::string(found.holds() ? "too: " : "NOT: ") + fixed(found.above, 3) + " and " +
-                      fixed(found.below, 3)
-                : "one of them has no figure");
+  std::string text = found.rank.column + ": '" + found.rank.above + "' above '" + found.rank.below +
+                     "', as " + (found.rank.of_thesis ? "in the thesis" : "expected of Lapwing") +
+                     "? ";
+  if (!std::isfinite(found.above) || !std::isfinite(found.below))
+    return text + "One of them has no figure";
+  text += found.holds() ? "Yes" : "NO";
+  if (!found.clear()) text += ", within the intervals";
+  return text + ": " + fixed(found.above, 3) + " and " + fixed(found.below, 3);
 }
 
 Chart chart_of(const ReproducedTable& table) {
@@ -226,6 +265,7 @@ ReproducedTable reproduced_table(const Reproduction& made,
                                  const std::map<RecordSource, Value::List>& records,
                                  std::string caption) {
   const Assembly assembly(made, records);
+  assembly.require_places();
   ReproducedTable table;
   table.made = made;
   table.caption = std::move(caption);
@@ -242,8 +282,11 @@ ReproducedTable reproduced_table(const Reproduction& made,
   }
   for (const ReproducedRank& rank : made.ranks) {
     const std::size_t column = place_of(made.columns, rank.column);
-    table.ranks.push_back({rank, table.cells[place_of(made.rows, rank.above)][column].mean,
-                           table.cells[place_of(made.rows, rank.below)][column].mean});
+    const ReproducedCell& above = table.cells[place_of(made.rows, rank.above)][column];
+    const ReproducedCell& below = table.cells[place_of(made.rows, rank.below)][column];
+    const auto known = [](double interval) { return std::isfinite(interval) ? interval : 0; };
+    table.ranks.push_back(
+        {rank, above.mean, below.mean, std::hypot(known(above.interval), known(below.interval))});
   }
   return table;
 }
@@ -305,6 +348,7 @@ std::vector<std::vector<std::string>> table_cells(const ReproducedTable& table) 
 
 std::string table_notes(const ReproducedTable& table) {
   std::string text = table.caption + "\n";
+  for (const std::string& sentence : table.warnings) text += "! " + sentence + "\n";
   for (const RankFound& rank : table.ranks) text += "* " + rank_sentence(rank) + ".\n";
   if (!table.made.differs.empty()) text += "Why the figures differ from the thesis's:\n";
   for (const std::string& sentence : table.made.differs) text += "* " + sentence + "\n";
@@ -345,13 +389,17 @@ Value to_value(const ReproducedTable& table) {
     if (table.below[r]) row.set("below", to_value(*table.below[r]));
     rows.push_back(std::move(row));
   }
+  value.set("warnings", Value(Value::List(table.warnings.begin(), table.warnings.end())));
   Value& ranks = value.set("ranks", Value::list());
   for (const RankFound& found : table.ranks) {
     Value rank = Value::map();
     rank.set("above", found.rank.above);
     rank.set("below", found.rank.below);
     rank.set("column", found.rank.column);
-    rank.set("holds", found.holds());
+    rank.set("claim", found.rank.of_thesis ? "thesis" : "lapwing");
+    const bool known = std::isfinite(found.above) && std::isfinite(found.below);
+    rank.set("holds", known ? Value(found.holds()) : Value());
+    rank.set("clear", known ? Value(found.clear()) : Value());
     ranks.push_back(std::move(rank));
   }
   return value;

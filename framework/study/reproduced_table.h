@@ -2,6 +2,7 @@
 // A table of the thesis made again: the figures of studies, and the thesis's own beside them.
 #pragma once
 
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
@@ -22,7 +23,10 @@ struct ReproducedCell {
 struct RankFound {
   ReproducedRank rank;
   double above = 0, below = 0;  // our means
+  double interval = 0;          // of their difference, if they do not depend on each other
   bool holds() const { return above > below; }
+  // The difference is larger than its interval, where there is one.
+  bool clear() const { return !(std::abs(above - below) <= interval); }
 };
 
 struct ReproducedTable {
@@ -31,7 +35,8 @@ struct ReproducedTable {
   std::vector<std::vector<ReproducedCell>> cells;    // by row, by column
   std::vector<std::optional<ReproducedCell>> below;  // by row, of `paired`: how far below that row
   std::vector<RankFound> ranks;
-  std::vector<Section> pictures;  // of the report, one for each of `made.pictures`
+  std::vector<Section> pictures;      // of the report, one for each of `made.pictures`
+  std::vector<std::string> warnings;  // sentences: what a reader of the figures must know
 };
 
 // Where the records of a cell come from: a study, and the folder of them or "".
@@ -39,7 +44,8 @@ using RecordSource = std::pair<std::string, std::string>;
 std::vector<RecordSource> record_sources(const Reproduction& made);
 
 // `records`: of all sources. A cell is the mean of the figure over the records of its study that
-// have what its row and its column ask for. InputError for a figure that is not a number.
+// have what its row and its column ask for. InputError for a figure that is not a number, and for
+// places that no record of the study has.
 ReproducedTable reproduced_table(const Reproduction& made,
                                  const std::map<RecordSource, Value::List>& records,
                                  std::string caption);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <set>
 #include <tuple>
 
@@ -69,7 +70,19 @@ std::string word_of(const Value& value) {
   return value.is_text() ? value.as_text() : to_json(value, -1);
 }
 
+// Studies are folders, beside reproduction.json.
+void require_study_name(const std::string& name, const Origin& origin) {
+  const bool usual = !name.empty() && name != "reproduction" &&
+                     name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == name.npos;
+  if (!usual)
+    throw InputError(origin,
+                     "a study's name has small letters, digits and '_', and is not "
+                     "'reproduction': '" +
+                         name + "'");
+}
+
 ReproducedStudy study_from(const std::string& name, const Value& value) {
+  require_study_name(name, value.origin());
   const KnownMap given(value, "study " + name, {"command", "arguments", "options", "quick"});
   ReproducedStudy study{.name = name, .command = given.need("command").as_text(), .arguments = {}};
   for (const Value& argument : given.list("arguments"))
@@ -92,7 +105,11 @@ ReproducedColumn column_from(const Value& value) {
   column.records = given.text("records");
   column.where = given.map("where");
   column.scale = given.number("scale", 1);
-  column.digits = static_cast<int>(given.number("digits", 2));
+  const double digits = given.number("digits", 2);
+  if (digits != std::floor(digits) || digits < 0 || digits > 9)
+    throw InputError(value.origin(),
+                     "column '" + column.name + "': digits is a whole number from 0 to 9");
+  column.digits = static_cast<int>(digits);
   return column;
 }
 
@@ -168,15 +185,51 @@ ReproducedPictures pictures_from(const Value& value, const std::vector<Reproduce
   return pictures;
 }
 
-void add_rest(const KnownMap& given, const Value& file, Reproduction& made) {
-  for (const Value& entry : given.list("ranks")) {
-    const KnownMap rank(entry, "a rank", {"above", "below", "column"});
-    made.ranks.push_back(
-        {rank.need("above").as_text(), rank.need("below").as_text(), word_of(rank.need("column"))});
-    named(made.rows, made.ranks.back().above, "row", entry.origin());
-    named(made.rows, made.ranks.back().below, "row", entry.origin());
-    named(made.columns, made.ranks.back().column, "column", entry.origin());
+Value::List one_or_more(const Value& value) {
+  return value.is_list() ? value.as_list() : Value::List{value};
+}
+
+// What the thesis is said to claim must be what its figures say, where there are figures.
+void require_claimed(const Reproduction& made, const ReproducedRank& rank, const Origin& origin) {
+  const ReproducedRow& above = named(made.rows, rank.above, "row", origin);
+  const ReproducedRow& below = named(made.rows, rank.below, "row", origin);
+  const std::size_t column = static_cast<std::size_t>(
+      &named(made.columns, rank.column, "column", origin) - made.columns.data());
+  if (!rank.of_thesis) return;
+  const Value &more = above.thesis[column], &less = below.thesis[column];
+  if (more.is_number() && less.is_number()) {
+    if (more.as_number() > less.as_number()) return;
+    throw InputError(origin, "rank: in the thesis, '" + rank.above + "' is not above '" +
+                                 rank.below + "' in '" + rank.column + "'");
   }
+  for (const ReproducedRow& row : made.rows)
+    if (row.thesis[column].is_number())
+      throw InputError(origin, "rank: the thesis has no figures of '" + rank.above + "' and '" +
+                                   rank.below + "' in '" + rank.column +
+                                   "'; write `claim: lapwing` if it is ours");
+}
+
+void add_ranks(const Value& entry, Reproduction& made) {
+  const KnownMap given(entry, "a rank", {"above", "below", "column", "claim"});
+  const std::string claim = given.text("claim", "thesis");
+  if (claim != "thesis" && claim != "lapwing")
+    throw InputError(entry.origin(), "a rank's claim is thesis or lapwing, not '" + claim + "'");
+  for (const Value& column : one_or_more(given.need("column")))
+    for (const Value& below : one_or_more(given.need("below"))) {
+      made.ranks.push_back(
+          {given.need("above").as_text(), below.as_text(), word_of(column), claim == "thesis"});
+      require_claimed(made, made.ranks.back(), entry.origin());
+    }
+}
+
+bool is_finite_number(const std::string& text) {
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  return !text.empty() && *end == '\0' && std::isfinite(number);
+}
+
+void add_rest(const KnownMap& given, const Value& file, Reproduction& made) {
+  for (const Value& entry : given.list("ranks")) add_ranks(entry, made);
   if (const Value* entry = given.find("paired")) {
     const KnownMap paired(*entry, "paired", {"to", "column", "by"});
     made.paired = {paired.need("to").as_text(), word_of(paired.need("column")),
@@ -189,7 +242,7 @@ void add_rest(const KnownMap& given, const Value& file, Reproduction& made) {
     made.chart_axis = chart.need("axis").as_text();
     made.chart_unit = chart.text("unit");
     for (const auto& column : made.columns)
-      if (column.name.find_first_not_of("0123456789.") != column.name.npos)
+      if (!is_finite_number(column.name))
         throw InputError(file.origin(), "chart: column '" + column.name + "' is not a number");
   }
   for (const Value& entry : given.list("pictures"))
@@ -197,16 +250,30 @@ void add_rest(const KnownMap& given, const Value& file, Reproduction& made) {
   for (const Value& sentence : given.list("differs")) made.differs.push_back(sentence.as_text());
 }
 
+// A table or figure of the same number before one whose name is alike.
+std::string nearest_of(const std::vector<std::string>& names, const std::string& name) {
+  const auto number = [](const std::string& text) {
+    return text.substr(std::min(text.find_first_of("0123456789"), text.size()));
+  };
+  for (const std::string& one : names)
+    if (!number(name).empty() && number(one) == number(name)) return one;
+  return nearest_name(name, names);
+}
+
 fs::path file_named(const fs::path& folder, const std::string& name) {
   const std::vector<std::string> names = reproduction_names(folder);
   if (std::find(names.begin(), names.end(), name) != names.end()) return folder / (name + ".yaml");
-  const std::string nearest = nearest_name(name, names);
+  const std::string nearest = nearest_of(names, name);
   std::string all;
   for (const std::string& one : names) all += (all.empty() ? "" : ", ") + one;
   throw InputError("no table or figure '" + name + "'" +
                    (nearest.empty() ? "" : " (did you mean '" + nearest + "'?)") + "; there are " +
                    all);
 }
+
+// `sharing`: the name of a file that takes its studies, or "".
+Reproduction read_table(const fs::path& folder, const std::string& name,
+                        const std::string& sharing);
 
 }  // namespace
 
@@ -247,7 +314,28 @@ std::vector<std::string> reproduction_names(const fs::path& folder) {
   return names;
 }
 
+std::string Reproduction::checksum_of_studies() const {
+  Value all = Value::list();
+  for (const ReproducedStudy& study : studies) {
+    Value one = Value::map();
+    one.set("name", study.name);
+    one.set("command", study.command);
+    one.set("arguments", Value(Value::List(study.arguments.begin(), study.arguments.end())));
+    one.set("options", study.options);
+    one.set("quick", study.quick);
+    all.push_back(std::move(one));
+  }
+  return sha256(to_json(all));
+}
+
 Reproduction read_reproduction(const fs::path& folder, const std::string& name) {
+  return read_table(folder, name, "");
+}
+
+namespace {
+
+Reproduction read_table(const fs::path& folder, const std::string& name,
+                        const std::string& sharing) {
   const fs::path path = file_named(folder, name);
   const std::string text = read_file(path);
   const Value file = from_yaml(text, path.string());
@@ -258,17 +346,16 @@ Reproduction read_reproduction(const fs::path& folder, const std::string& name) 
   made.name = made.owner = name;
   made.title = given.need("title").as_text();
   made.thesis = given.need("thesis").as_text();
-  made.checksum = sha256(text);
   if (const Value* from = given.find("from")) {
+    if (!sharing.empty())
+      throw InputError(from->origin(), "'" + sharing + "' takes its studies from '" + name +
+                                           "', which takes them from '" + word_of(*from) +
+                                           "': name the one that states them");
     if (given.find("studies"))
       throw InputError(from->origin(), "'from' and 'studies': give one of them");
-    Reproduction other = read_reproduction(folder, word_of(*from));
-    if (other.owner != other.name)
-      throw InputError(from->origin(), "'" + other.name + "' takes its studies from '" +
-                                           other.owner + "' itself: name that");
+    Reproduction other = read_table(folder, word_of(*from), name);
     made.owner = other.name;
     made.studies = std::move(other.studies);
-    made.checksum = sha256(made.checksum + other.checksum);
   } else {
     for (const auto& [study, value] : given.need("studies").as_map())
       made.studies.push_back(study_from(study, value));
@@ -284,7 +371,10 @@ Reproduction read_reproduction(const fs::path& folder, const std::string& name) 
   require_names_once(made.rows, "rows", file);
   require_studies(made, file);
   add_rest(given, file, made);
+  if (made.pictures.empty() && (made.rows.empty() || made.columns.empty()))
+    throw InputError(file.origin(), "'" + path.string() + "' has neither figures nor pictures");
   return made;
 }
 
+}  // namespace
 }  // namespace lapwing

@@ -16,6 +16,7 @@
 //     - {name: NextBestView, where: {method: greedy}, thesis: [79.30]}
 //   pictures:
 //     - {title: The path, study: flight, section: Path, blocks: [Path from above]}
+//   ranks: [{above: NextBestView, below: [A, B], column: F}]  # what the thesis's figures say
 //   differs: [why figures cannot be compared, one sentence each]
 //
 // Pictures are blocks of the reports of studies whose command is `run`; a figure of pictures alone
@@ -63,9 +64,11 @@ struct ReproducedRow {
   std::vector<Value> thesis;  // one for each column: a number, a text such as "30-60", or null
 };
 
-// What the thesis says of its figures, and holds or does not hold of ours.
+// An order of two figures, which holds or does not hold of ours.
 struct ReproducedRank {
   std::string above, below, column;  // names
+  // Whose claim it is. The thesis's figures, where it has both, agree with its own.
+  bool of_thesis = true;
 };
 
 // Differences to one row, record by record of equal `by`.
@@ -95,7 +98,9 @@ struct Reproduction {
   std::vector<ReproducedPictures> pictures;
   std::vector<std::string> differs;
   std::string chart_axis, chart_unit;  // not empty: columns are places on this axis, named by it
-  std::string checksum;                // SHA-256 of the files that it was read from
+
+  // SHA-256 of all that the studies are told: results of another one are others.
+  std::string checksum_of_studies() const;
 };
 
 // Of the YAML files of a folder, by chapter, tables first: "4.1", "4.2", "figure_4.12", "5.1".

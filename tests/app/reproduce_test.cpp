@@ -73,7 +73,7 @@ TEST_F(Reproduce, AQuickOneSaysWhatItLeavesOut) {
   EXPECT_NE(made.out.find("Quick, nodes: solver \"greedy\" in place of [\"greedy\","),
             std::string::npos)
       << made.out;
-  EXPECT_NE(made.out.find("one of them has no figure"), std::string::npos) << made.out;
+  EXPECT_NE(made.out.find("One of them has no figure"), std::string::npos) << made.out;
   EXPECT_TRUE(fs::exists(folder_ / "out/reproduce/9.1_quick/table.txt"));
 }
 
@@ -99,9 +99,18 @@ TEST_F(Reproduce, GoesOnWithWhatIsThereAndOnlyWithTheSame) {
   EXPECT_EQ(other.status, 2);
   EXPECT_NE(other.err.find("of another version (program is"), std::string::npos) << other.err;
   write_file_atomically(folder / "reproduction.json", stated);
+  // Words may change, what the studies are told may not, nor what they read.
   write_table(std::string(kTable) + "\n# changed\n");
-  EXPECT_NE(reproduce({"9.1", "--data", "data", "--resume"}).err.find("(definition is"),
+  EXPECT_EQ(reproduce({"9.1", "--data", "data", "--resume"}).status, 0);
+  std::string more = kTable;
+  more.replace(more.find("[greedy, local_search]"), 22, "[greedy, local_search, cost_benefit]");
+  write_table(more);
+  EXPECT_NE(reproduce({"9.1", "--data", "data", "--resume"}).err.find("(studies is"),
             std::string::npos);
+  write_table(kTable);
+  write_file_atomically(folder_ / "data/nodes.txt", std::string(kInstance) + "3 3 1\n");
+  const Finished others = reproduce({"9.1", "--data", "data", "--resume"});
+  EXPECT_NE(others.err.find("(files is"), std::string::npos) << others.err;
 }
 
 TEST_F(Reproduce, AFigureShowsPicturesOfItsRuns) {
@@ -141,6 +150,60 @@ pictures: [{title: The path, study: hop, section: Way}]
   EXPECT_NE(wrong.err.find("study 'hop': its report has no section 'Way'; there are 'Summary'"),
             std::string::npos)
       << wrong.err;
+}
+
+TEST_F(Reproduce, SaysThatAPlanIsNotCertified) {
+  for (const char* name : {"configs/vehicles", "configs/cameras"})
+    fs::copy(fs::path(LAPWING_SOURCE_DIR) / name, home_ / name);
+  write_file_atomically(home_ / "configs/reproduce/hop.lua",
+                        film("name = 'hop', duration = 0.5, hard = 0.01"));
+  write_table(R"(
+title: A hop
+thesis: figure 9.1
+studies: {hop: {command: run, arguments: ["{here}/hop.lua"]}}
+columns: [{name: planning, figure: seconds/solve}]
+rows: [{name: a hop}]
+)");
+  const Finished made = reproduce({"9.1", "--json", "--threads", "1"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const Value answer = from_json(made.out, "answer");
+  ASSERT_EQ(answer.at("warnings").as_list().size(), 1u);
+  const std::string said = answer.at("warnings").as_list()[0].as_text();
+  EXPECT_EQ(said.rfind("The plan of study 'hop' is not certified: its status is '", 0), 0u) << said;
+  const fs::path folder = folder_ / "out/reproduce/9.1";
+  EXPECT_NE(read_file(folder / "table.txt").find("! " + said), std::string::npos);
+  EXPECT_NE(read_file(folder / "report.html").find("is not certified"), std::string::npos);
+}
+
+TEST_F(Reproduce, AMistakeInOneTableLeavesTheOthers) {
+  write_file_atomically(home_ / "configs/reproduce/9.2.yaml",
+                        "title: t\nthesis: table 9.2\nfrom: \"9.2\"\n");
+  const Finished listed = reproduce({"list"});
+  EXPECT_EQ(listed.status, 2);
+  EXPECT_NE(listed.out.find("Tours of four nodes"), std::string::npos) << listed.out;
+  EXPECT_NE(listed.err.find("9.2.yaml:3"), std::string::npos) << listed.err;
+  EXPECT_EQ(reproduce({"list", "--quick"}).status, 2);
+  EXPECT_EQ(reproduce({"9.1", "--data", "data"}).status, 0);
+  EXPECT_NE(reproduce({"fig_9.1"}).err.find("did you mean '9.1'?"), std::string::npos);
+  // Before any study is begun.
+  std::string text = kTable;
+  text.replace(text.find("{data:nodes.txt}"), 16, "{hear}/nodes.txt");
+  write_table(text);
+  const Finished place = reproduce({"9.1", "--data", "data", "-o", "other"});
+  EXPECT_EQ(place.status, 2);
+  EXPECT_NE(place.err.find("no place {hear}"), std::string::npos) << place.err;
+  EXPECT_FALSE(fs::exists(folder_ / "other"));
+  // A place of a record that is not there, after them.
+  text = kTable;
+  text.replace(text.find("figure: score"), 13, "figure: skore");
+  write_table(text);
+  const Finished figure = reproduce({"9.1", "--data", "data", "-o", "third"});
+  EXPECT_EQ(figure.status, 2);
+  EXPECT_NE(figure.err.find("no record of study 'nodes' has 'skore'"), std::string::npos)
+      << figure.err;
+  write_table(kTable);
+  EXPECT_EQ(reproduce({"9.1", "--data", "data", "-o", "third", "--resume"}).status, 0)
+      << "what was done is not lost";
 }
 
 TEST_F(Reproduce, IsNoCommandForMpirun) {

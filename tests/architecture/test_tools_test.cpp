@@ -202,7 +202,8 @@ TEST(TestSummary, CountsAndNamesWhatWasSkippedByReason) {
             "1 test failed:\n  Maps.Wrong\n    /x/a.cpp:4: Failure\n    no maps\n");
 }
 
-TEST(TestSummary, NamesTheTestThatAProgramEndedIn) {
+// A crash, a failure outside of any test, a script, and a program that is not there.
+TEST(TestSummary, NamesEveryFailureOfCtest) {
   EXPECT_EQ(summary("1/2 Testing: core\n"
                     "[ RUN      ] A.Good\n[       OK ] A.Good (1 ms)\n"
                     "[ RUN      ] A.Crash\n"
@@ -213,8 +214,23 @@ TEST(TestSummary, NamesTheTestThatAProgramEndedIn) {
                     "[  FAILED  ] 1 test, listed below:\n[  FAILED  ] B.Wrong/0\n"
                     "<end of output>\nTest time =   0.20 sec\n-----\nTest Failed.\n"),
             "No test was skipped\n2 tests failed:\n"
-            "  A.Crash\n    the program ended in this test\n"
+            "  A.Crash\n    core ended in this test\n"
             "  B.Wrong/0\n    /x/a.cpp:4: Failure\n");
+  const auto whole = [](const std::string& name, const std::string& output) {
+    return "1/2 Testing: " + name + "\nCommand: \"/x/" + name + "\"\nOutput:\n------\n" + output +
+           "<end of output>\nTest time =   0.20 sec\n-----\nTest Failed.\n";
+  };
+  EXPECT_EQ(summary(whole("core", "[ RUN      ] A.Crash\nterminate called\n") +
+                    whole("suite", "/x/a.cpp:4: Failure\nFailed\nno suite\n\n[  FAILED  ] S\n") +
+                    whole("script", "one\n\ntwo\n") +
+                    "2/2 Testing: missing\nCommand: \"\"\nOutput:\n-----\n<end of output>\n"
+                    "Test Passed.\n"),
+            "No test was skipped\n4 tests failed:\n"
+            "  A.Crash\n    core ended in this test; its last lines:\n      terminate called\n"
+            "  suite\n    it failed; its last lines:\n      /x/a.cpp:4: Failure\n      Failed\n"
+            "      no suite\n"
+            "  script\n    it failed; its last lines:\n      one\n      two\n"
+            "  missing\n    its program is not there\n");
 }
 
 }  // namespace

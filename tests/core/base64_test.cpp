@@ -8,9 +8,13 @@ namespace {
 
 // RFC 4648, section 10.
 TEST(Base64, HasTheValuesOfItsStandard) {
-  const std::pair<const char*, const char*> kValues[] = {
-      {"", ""},         {"f", "Zg=="},        {"fo", "Zm8="},        {"foo", "Zm9v"},
-      {"foob", "Zm9vYg=="}, {"fooba", "Zm9vYmE="}, {"foobar", "Zm9vYmFy"}};
+  const std::pair<const char*, const char*> kValues[] = {{"", ""},
+                                                         {"f", "Zg=="},
+                                                         {"fo", "Zm8="},
+                                                         {"foo", "Zm9v"},
+                                                         {"foob", "Zm9vYg=="},
+                                                         {"fooba", "Zm9vYmE="},
+                                                         {"foobar", "Zm9vYmFy"}};
   for (const auto& [bytes, text] : kValues) {
     EXPECT_EQ(base64(bytes), text);
     EXPECT_EQ(bytes_of_base64(text), bytes);

@@ -30,7 +30,7 @@ columns:
   - {name: time, unit: s, figure: seconds, records: times}
 rows:
   - {name: A, where: {method: a}, thesis: [50, "10-20"]}
-  - {name: B, where: {method: b}, thesis: [null, 3]}
+  - {name: B, where: {method: b}, thesis: [40, null]}
 ranks: [{above: A, below: B, column: F}]
 paired: {to: A, column: F, by: seed}
 differs: [The scene is another one.]
@@ -93,8 +93,10 @@ TEST_F(Reproductions, RowsArePairedWithinAStudy) {
   const auto rows = [](const char* text) { return from_json(text, "rows").as_list(); };
   const ReproducedTable table = reproduced_table(
       made,
-      {{{"hut", ""}, rows(R"([{"method": "a", "seed": 1, "with_first": {"f": 0.5}}])")},
-       {{"noisy", ""}, rows(R"([{"method": "b", "seed": 1, "with_first": {"f": 0.4}}])")}},
+      {{{"hut", ""},
+        rows(R"([{"method": "a", "seed": 1, "seconds": 1, "with_first": {"f": 0.5}}])")},
+       {{"noisy", ""},
+        rows(R"([{"method": "b", "seed": 1, "seconds": 1, "with_first": {"f": 0.4}}])")}},
       "caption");
   EXPECT_NEAR(table.cells[1][0].mean, 40, 1e-9);
   EXPECT_FALSE(table.below[1]);
@@ -129,8 +131,11 @@ TEST_F(Reproductions, CellsAreMeansBesideTheThesis) {
   EXPECT_EQ(cells[0], titles);
   EXPECT_EQ(cells[1][2], "50.00");
   EXPECT_EQ(cells[1][4], "10-20");
-  EXPECT_EQ(cells[2][2], "-");
-  EXPECT_NE(table_notes(table).find("here too: 60.000 and 35.000"), std::string::npos)
+  EXPECT_EQ(cells[2][2], "40.00");
+  EXPECT_EQ(cells[2][4], "-");
+  EXPECT_NE(table_notes(table).find(
+                "F: 'A' above 'B', as in the thesis? Yes, within the intervals: 60.000"),
+            std::string::npos)
       << table_notes(table);
   EXPECT_NE(table_csv(table).find("\nA,F,%,60,"), std::string::npos) << table_csv(table);
   EXPECT_EQ(to_value(table).at("rows").as_list().size(), 2u);
@@ -163,7 +168,11 @@ TEST_F(Reproductions, ShareStudiesOfOneOther) {
   EXPECT_EQ(made.owner, "9.1");
   EXPECT_EQ(made.studies.front().name, "hut");
   write("9.5", "title: t\nthesis: table 9.5\nfrom: \"9.4\"\ncolumns: []\nrows: []\n");
-  EXPECT_NE(refusal("9.5").find("takes its studies from '9.1'"), std::string::npos);
+  EXPECT_NE(refusal("9.5").find("'9.5' takes its studies from '9.4', which takes them from '9.1'"),
+            std::string::npos)
+      << refusal("9.5");
+  write("9.6", "title: t\nthesis: table 9.6\nfrom: \"9.6\"\ncolumns: []\nrows: []\n");
+  EXPECT_NE(refusal("9.6").find("from '9.6'"), std::string::npos) << "it ends";
 }
 
 TEST_F(Reproductions, RefuseWhatIsUnknown) {
@@ -178,6 +187,107 @@ TEST_F(Reproductions, RefuseWhatIsUnknown) {
   EXPECT_NE(refusal("command: evaluate scan\n", "").find("9.2.yaml"), std::string::npos);
   EXPECT_NE(refusal("figure: seconds, ", "").find("`figure`"), std::string::npos);
   EXPECT_NE(refusal("column: F, by", "column: G, by").find("no column 'G'"), std::string::npos);
+}
+
+TEST_F(Reproductions, RefuseWhatCannotBeMade) {
+  EXPECT_NE(refusal("  hut:", "  ../hut:").find("a study's name"), std::string::npos);
+  EXPECT_NE(refusal("  hut:", "  reproduction:").find("a study's name"), std::string::npos);
+  for (const char* digits : {"60", "-3", "2.7"})
+    EXPECT_NE(refusal("scale: 100}", "scale: 100, digits: " + std::string(digits) + "}")
+                  .find("digits is a whole number from 0 to 9"),
+              std::string::npos)
+        << digits;
+  for (const char* name : {"F", ".", "1.2.3", "''"}) {
+    write("9.2",
+          "title: t\nthesis: table 9.2\nfrom: \"9.1\"\nchart: {axis: x}\n"
+          "columns: [{name: " +
+              std::string(name) + ", figure: f}]\nrows: [{name: A}]\n");
+    EXPECT_NE(refusal("9.2").find("is not a number"), std::string::npos) << name << refusal("9.2");
+  }
+  write("9.3", "title: t\nthesis: table 9.3\nfrom: \"9.1\"\ncolumns: []\nrows: []\n");
+  EXPECT_NE(refusal("9.3").find("has neither figures nor pictures"), std::string::npos);
+}
+
+// A mistyped place would be an empty cell, after hours.
+TEST_F(Reproductions, PlacesThatNoRecordHasAreNamed) {
+  const auto made_of = [&](const std::string& part, const std::string& by) -> std::string {
+    std::string text = kTable;
+    text.replace(text.find(part), part.size(), by);
+    write("9.2", text);
+    const Value::List rows =
+        from_json(R"([{"method": "a", "seed": 1, "with_first": {"f": 0.5, "curve": [1, 2]},
+                       "none": null}])",
+                  "rows")
+            .as_list();
+    const Value::List times = from_json(R"([{"method": "a", "seconds": 3}])", "times").as_list();
+    try {
+      reproduced_table(read_reproduction(folder_, "9.2"),
+                       {{{"hut", ""}, rows}, {{"hut", "times"}, times}}, "");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(made_of("with_first/f", "with_first/f"), "");
+  EXPECT_EQ(made_of("with_first/f", "with_first/curve/7"), "") << "another record may be longer";
+  EXPECT_EQ(made_of("with_first/f", "none"), "");
+  EXPECT_EQ(made_of("with_first/f", "with_first/g"),
+            "table 9.2: no record of study 'hut' has 'with_first/g'; the first has method, seed, "
+            "with_first, none");
+  EXPECT_NE(made_of("where: {method: a}", "where: {methud: a}").find("has 'methud'"),
+            std::string::npos);
+}
+
+TEST_F(Reproductions, RanksAreWhatTheThesisSays) {
+  const auto with = [&](const std::string& rank, const std::string& figures = "[40, null]") {
+    std::string text = kTable;
+    text.replace(text.find("[40, null]"), 10, figures);
+    const std::string old = "{above: A, below: B, column: F}";
+    text.replace(text.find(old), old.size(), rank);
+    write("9.2", text);
+    return refusal("9.2");
+  };
+  EXPECT_EQ(with("{above: A, below: B, column: F}"), "");
+  EXPECT_NE(with("{above: B, below: A, column: F}").find("'B' is not above 'A' in 'F'"),
+            std::string::npos);
+  EXPECT_EQ(with("{above: B, below: A, column: F, claim: lapwing}"), "");
+  EXPECT_NE(with("{above: B, below: A, column: F, claim: mine}").find("thesis or lapwing"),
+            std::string::npos);
+  EXPECT_NE(with("{above: A, below: B, column: F}", "[null, null]")
+                .find("the thesis has no figures of 'A' and 'B' in 'F'"),
+            std::string::npos);
+  EXPECT_EQ(with("{above: A, below: B, column: time}"), "") << "a column without numbers";
+  EXPECT_EQ(with("{above: A, below: [B], column: [F, time]}"), "");
+  EXPECT_EQ(read_reproduction(folder_, "9.2").ranks.size(), 2u);
+}
+
+TEST_F(Reproductions, ARankSaysWhetherIntervalsAllowIt) {
+  const auto sentence = [](double above, double below, double interval) {
+    ReproducedTable table;
+    table.ranks = {{{"A", "B", "F"}, above, below, interval}};
+    return table_notes(table);
+  };
+  const std::string asked = "\n* F: 'A' above 'B', as in the thesis? ";
+  EXPECT_EQ(sentence(3, 1, 0), asked + "Yes: 3.000 and 1.000.\n");
+  EXPECT_EQ(sentence(3, 1, 5), asked + "Yes, within the intervals: 3.000 and 1.000.\n");
+  EXPECT_EQ(sentence(1, 3, 5), asked + "NO, within the intervals: 1.000 and 3.000.\n");
+  EXPECT_EQ(sentence(1, 3, 0), asked + "NO: 1.000 and 3.000.\n");
+  EXPECT_EQ(sentence(std::nan(""), 3, 0), asked + "One of them has no figure.\n");
+}
+
+TEST_F(Reproductions, WordsOfATableDoNotChangeItsStudies) {
+  const std::string before = read_reproduction(folder_, "9.1").checksum_of_studies();
+  const auto after = [&](const std::string& part, const std::string& by) {
+    std::string text = kTable;
+    text.replace(text.find(part), part.size(), by);
+    write("9.2", text);
+    return read_reproduction(folder_, "9.2").checksum_of_studies();
+  };
+  EXPECT_EQ(after("The scene is another one.", "Another scene."), before);
+  EXPECT_EQ(after("name: time,", "name: seconds,"), before);
+  EXPECT_NE(after("seeds: \"1,2\"", "seeds: \"1,3\""), before);
+  EXPECT_NE(after("guard: 5", "guard: 6"), before);
+  EXPECT_NE(after("{examples}/hut.lua", "{examples}/hat.lua"), before);
 }
 
 TEST_F(Reproductions, AFigureThatIsNoNumberIsNamed) {
