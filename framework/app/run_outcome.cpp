@@ -96,7 +96,7 @@ Report report_of(const MissionResult& result, const std::string& status, std::ve
 
 void add_report(const Report& report, const Invocation& invocation, RunFiles& files) {
   files.report = render_html(report);
-  if (invocation.report_data) files.report_data = to_json(to_value(report)) + "\n";
+  if (invocation.report_data) files.report_data = to_json(to_value(report), -1) + "\n";
 }
 
 void add_obstacles(const MissionResult& result, RunFiles& files) {
