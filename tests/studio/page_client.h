@@ -14,6 +14,7 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "framework/core/json.h"
 
@@ -120,6 +121,7 @@ class PageClient {
     hello.set("seen", 0);
     send(hello);
     welcome = until([](const Value& m) { return m.at("type") == Value("welcome"); });
+    told_ = welcome.at("answer");
   }
 
   const std::string& head() const { return head_; }
@@ -179,8 +181,11 @@ class PageClient {
     }
   }
 
-  // The first message that `wanted` takes; those before are dropped. Throws where none comes.
+  // The first message that `wanted` takes; those before are dropped. Throws where none comes. An
+  // answer that came before the page did is in the welcome: that is the first message.
   Value until(const std::function<bool(const Value&)>& wanted) {
+    const Value told = std::exchange(told_, Value());
+    if (!told.is_null() && wanted(told)) return told;
     const auto end = std::chrono::steady_clock::now() + kPatience;
     while (std::chrono::steady_clock::now() < end) {
       Value message = receive();
@@ -207,6 +212,7 @@ class PageClient {
  private:
   Connection connection_;
   std::string head_, buffer_;
+  Value told_;
 };
 
 // ---- messages -----------------------------------------------------------------------------------
