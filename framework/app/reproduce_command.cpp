@@ -172,17 +172,19 @@ class Reproducing {
   }
 
   // Of the files that the words of the studies name: missions, with modules of theirs, and data.
+  // What a study makes for another one is no input.
   Value checksums_of_files() const {
     Value sums = Value::map();
     for (const std::vector<std::string>& words : words_)
       for (const std::string& word : words) {
         const fs::path file = word.substr(0, word.find('@'));  // FILE@X,Y,Z of worlds
         std::error_code code;
-        if (!fs::is_regular_file(file, code)) continue;
+        if (file.string().starts_with(studies().string()) || !fs::is_regular_file(file, code))
+          continue;
         if (file.extension() == ".lua")
-          add_script_checksums(file, file.parent_path(), sums);
-        else
-          sums.set(file.filename().string(), sha256(read_file(file, kLargestFile)));
+          add_script_checksums(file, file.parent_path(), sums.set(file.string(), Value::map()));
+        else if (!sums.find(file.string()))
+          sums.set(file.string(), sha256(read_file(file, kLargestFile)));
       }
     return sums;
   }

@@ -122,7 +122,10 @@ title: A hop
 thesis: figure 9.1
 studies:
   hop: {command: run, arguments: ["{here}/hop.lua"]}
-  fast: {command: run, arguments: ["{here}/hop.lua"], options: {set: duration=6}}
+  fast:
+    command: run
+    arguments: ["{here}/hop.lua"]
+    options: {set: duration=6, from: "{study:hop}/plan.json"}
 pictures:
   - {title: The path, study: hop, section: Path, blocks: [Path from above]}
   - {title: How fast, study: fast, section: Motion, blocks: [Speed across]}
@@ -137,6 +140,8 @@ differs: [Hops are others.]
     EXPECT_NE(page.find(part), std::string::npos) << part;
   EXPECT_EQ(page.find("Path from the south"), std::string::npos);
   EXPECT_TRUE(fs::exists(folder / "hop/plan.json"));
+  const Finished again = reproduce({"9.1", "--resume"});
+  EXPECT_EQ(again.status, 0) << "what one study made for another is no input of it: " << again.err;
   // A picture that is not there.
   write_table(R"(
 title: A hop
