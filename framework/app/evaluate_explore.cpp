@@ -204,6 +204,7 @@ Value settings_stated(const ExploreEvaluation& request, const Evaluation& of,
   stated.set("seed", static_cast<std::int64_t>(invocation.seed));
   stated.set("sigma", request.sigma);
   stated.set("dropped", request.dropped);
+  stated.set("smoothed", of.setup.episode.sensor.smoothed);
   stated.set("stereo", request.stereo);
   stated.set("lookahead", request.lookahead);
   stated.set("parameters", of.parameters);
@@ -222,6 +223,7 @@ Evaluation evaluation_of(const ExploreEvaluation& request, const Invocation& inv
   made.setup.episode.steps = request.steps;
   made.setup.episode.lookahead = request.lookahead;
   made.mapping = made.setup.set_mapping(request.mapping);
+  made.setup.set_smoothed(request.smoothed);
   made.moves = made.setup.set_moves(request.moves);
   set_depth(request, made.setup);
   for (const std::string& text : invocation.overrides) apply_override(made.parameters, text);

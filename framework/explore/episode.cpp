@@ -328,11 +328,12 @@ bool Explorer::choose(EpisodeStep& taken, int& place) {
 void Explorer::look(EpisodeStep& taken, int place) {
   taken.view = graph_[place];
   const double before = wall_seconds();
-  const PosedDepthImage image = settings_.sensor.measure(
+  PosedDepthImage image = settings_.sensor.measure(
       truth_.scene(), taken.view, settings_.seed + static_cast<std::uint64_t>(step_),
       settings_.threads);
   const double after = wall_seconds();
   began_ += after - before;  // the camera's time is not the explorer's
+  settings_.sensor.smooth(image, settings_.threads);
   map_.integrate(image);
   hidden_.saw(image);
   means_.touch(

@@ -48,8 +48,10 @@ void EpisodeReplay::take_next() {
     view = views_.at(static_cast<std::size_t>(taken_));
   }
   const EpisodeSettings& s = world_.settings;
-  map_->integrate(s.sensor.measure(*world_.scene, view, s.seed + static_cast<std::uint64_t>(taken_),
-                                   s.threads));
+  PosedDepthImage image =
+      s.sensor.measure(*world_.scene, view, s.seed + static_cast<std::uint64_t>(taken_), s.threads);
+  s.sensor.smooth(image, s.threads);
+  map_->integrate(image);
   clear_body(*map_, view, s.body);
   ++taken_;
 }

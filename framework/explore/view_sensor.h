@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The depth camera of an exploration, simulated: true depth, noisy depth, stereo (thesis 5.5.5).
+// And what is done with its depth before it is mapped.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 
 #include "framework/geometry/depth_camera.h"
+#include "framework/geometry/depth_smoothing.h"
 #include "framework/geometry/stereo_depth.h"
 #include "framework/view/viewpoint.h"
 
@@ -16,6 +18,7 @@ struct ViewSensor {
   double range = 20;  // m
   std::optional<DepthNoise> noise = std::nullopt;
   std::optional<StereoOptions> stereo = std::nullopt;
+  double smoothed = 0;  // m, to which the noise is smoothed; 0: it is not
 
   // The image from there; `seed` is of its noise. Stereo comes first, noise on top of it.
   PosedDepthImage measure(const MeshScene& scene, const Viewpoint& view, std::uint64_t seed,
@@ -25,6 +28,11 @@ struct ViewSensor {
                          : render_depth(scene, image.camera, pinhole, range, threads);
     if (noise) add_noise(image.image, *noise, seed);
     return image;
+  }
+  // Before it is mapped; the thesis does nothing here. The noise of stereo stays: neighbours share
+  // it.
+  void smooth(PosedDepthImage& measured, int threads) const {
+    if (noise) smooth_depth(measured.image, noise->sigma, smoothed, threads);
   }
   // Without noise.
   PosedDepthImage look(const MeshScene& scene, const Viewpoint& view, int threads) const {
