@@ -23,7 +23,9 @@ constexpr double kLeastOfPlane = 6;     // pixels
 constexpr double kMostVariance = 0.25;  // of a plane at its pixel, times sigma^2: that of 4 pixels
 constexpr double kSettled = 0.01;       // sigma
 
-bool is_measured(float depth) { return depth > 0 && std::isfinite(depth); }
+bool is_measured(float depth) {
+  return depth > 0 && std::isfinite(depth);
+}
 
 // The measured pixels of a window: columns and rows from its middle, depth.
 struct Window {

@@ -33,7 +33,10 @@ class Replayed : public testing::TestWithParam<bool> {};
 
 TEST_P(Replayed, HasEveryVoxelAsTheExplorerKnewIt) {
   YardWorld world(20);
-  if (GetParam()) world.settings.sensor.noise = DepthNoise{0.05, 0.3};
+  if (GetParam()) {
+    world.settings.sensor.noise = DepthNoise{0.05, 0.3};
+    world.settings.sensor.smoothed = 0.1;
+  }
   const auto utility = plugins().create<ViewUtility>("proximity_count", Value::map());
   EpisodeReplay replay(
       {world.settings, world.start, world.truth.shared_scene(), YardWorld::new_map});

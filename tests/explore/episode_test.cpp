@@ -348,6 +348,31 @@ TEST(Episode, NoiseIsReplayedWithoutIt) {
   EXPECT_NEAR(curve.back(), sum, 1e-6 * sum);
 }
 
+// The surface of the map is nearer to that of the world, by several times.
+TEST(Episode, SmoothedDepthIsMappedInPlaceOfTheNoisyOne) {
+  YardWorld world(3);
+  world.settings.sensor.noise = DepthNoise{0.4, 1};
+  world.settings.show_truth = true;
+  const MeshDistance surface(world.truth.shared_scene(), 20);
+  const auto share_astray = [&](double smoothed) {
+    world.settings.sensor.smoothed = smoothed;
+    ObservedSurface observed(world.truth, world.settings.sensor, YardWorld::new_map);
+    const auto map = YardWorld::new_map();
+    explore(world.settings, world.start, world.truth, observed, Oracle(), *map);
+    double occupied = 0, astray = 0;
+    map->for_each_leaf([&](const VoxelLeaf& leaf) {
+      if (leaf.log_odds <= 0) return;
+      ++occupied;
+      if (surface.distance(map->grid().center(leaf.key), nullptr) > 1) ++astray;
+    });
+    EXPECT_GT(occupied, 500);
+    return astray / occupied;
+  };
+  const double noisy = share_astray(0), smooth = share_astray(0.2);
+  EXPECT_GT(noisy, 0.1);
+  EXPECT_LT(smooth, noisy / 4);
+}
+
 // What noise blocks today may be free tomorrow, and where the body is nothing else can be.
 TEST(Episode, NoiseDoesNotWallItIn) {
   YardWorld world(80);

@@ -37,7 +37,8 @@ Errors errors(const DepthImage& image, const DepthImage& truth, Among among) {
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
       if (!among(x, y) || image.at(x, y) == 0) continue;
-      const double error = static_cast<double>(image.at(x, y)) - static_cast<double>(truth.at(x, y));
+      const double error =
+          static_cast<double>(image.at(x, y)) - static_cast<double>(truth.at(x, y));
       ++count;
       sum += error;
       squares += error * error;

@@ -143,8 +143,9 @@ TEST_F(Exploring, AnEvaluationGoesOnWhereItWasStopped) {
   for (const char* seeds : {"18446744073709551615", "18446744073709551614-18446744073709551615"})
     refused(std::string("--world street:") + seeds, folder_ / "seeds",
             "expected seeds up to 9007199254740991");
-  for (const char* noise : {"--sigma nan", "--sigma -1", "--sigma inf", "--dropped -3",
-                            "--dropped 1.5", "--dropped nan", "--stereo nan", "--stereo -1"})
+  for (const char* noise :
+       {"--sigma nan", "--sigma -1", "--sigma inf", "--dropped -3", "--dropped 1.5",
+        "--dropped nan", "--smoothed -1", "--smoothed x", "--stereo nan", "--stereo -1"})
     refused(noise, folder_ / "noise", "expected a number from 0 to");
   EXPECT_EQ(evaluate("--moves clear=0.5", folder_ / "small"), 2);  // the body does not fit
   EXPECT_EQ(evaluate("--moves leap=3", folder_ / "unknown"), 2);

@@ -125,6 +125,19 @@ TEST_F(Exploring, WithoutAnImageThereIsNoPlan) {
   }
 }
 
+// By default to half a voxel, and not at all where that is asked for.
+TEST_F(Exploring, NoiseIsSmoothedToHalfAVoxel) {
+  const auto map = [&](const char* more, const char* out) {
+    const Flown flown =
+        explore(std::string("--set compare=false --set steps=2 --set camera.sigma=1 ") + more, out);
+    return read_file(flown.folder / "map.ot");
+  };
+  const std::string as_is = map("", "as_is");
+  EXPECT_EQ(map("--set camera.smoothed=0.2", "stated"), as_is);  // voxels of 0.4 m
+  EXPECT_NE(map("--set camera.smoothed=0", "noisy"), as_is);
+  EXPECT_NE(map("--set camera.smoothed=0.5", "less"), as_is);
+}
+
 // What noise puts into the map is no surface that was found.
 TEST_F(Exploring, NoiseFindsNoSurface) {
   const auto observed = [&](const char* more, const char* out) {
