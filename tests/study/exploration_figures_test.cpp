@@ -32,8 +32,8 @@ class ExplorationFiles : public ::testing::Test {
     ExplorationFigures figures;
     figures.folder = base_ / "now";
     figures.settings = from_json(
-        R"({"seed": 7, "sigma": 0.02, "dropped": 0.25, "smoothed": 0.01, "stereo": 0, "lookahead": 1,
-            "moves": {"step": 0.5}, "mapping": {}, "parameters": {}})",
+        R"({"seed": 7, "sigma": 0.02, "dropped": 0.25, "smoothed": 0.01, "stereo": 0,
+            "lookahead": 1, "moves": {"step": 0.5}, "mapping": {}, "parameters": {}})",
         "settings");
     figures.worlds = std::move(worlds);
     figures.utilities = std::move(utilities);

@@ -24,7 +24,8 @@ rounds:
       - {scenes: [mine, depot], seeds: [1, 10], explorer: oracle, steps: 5}
     fit: {epochs: 2}
   - samples:
-      - {scenes: [mine], seeds: [11, 11], explorer: itself, steps: 5, sigma: 0.5, dropped: 0.4, smoothed: 0}
+      - {scenes: [mine], seeds: [11, 11], explorer: itself, steps: 5, sigma: 0.5,
+         dropped: 0.4, smoothed: 0}
 )";
 
 class RecipeFile : public testing::Test {
