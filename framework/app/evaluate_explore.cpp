@@ -188,6 +188,9 @@ std::vector<std::string> utilities_of(const ExploreEvaluation& request, const Re
 void set_depth(const ExploreEvaluation& request, ExplorationSetup& setup) {
   if (request.sigma > 0 || request.dropped > 0)
     setup.episode.sensor.noise = DepthNoise{request.dropped, request.sigma};
+  setup.episode.sensor.smooth_to = request.smooth_to;
+  if (request.smooth_to > 0 && request.sigma == 0)
+    throw InputError("--smooth-to: there is no noise to smooth; expected --sigma above 0 with it");
   if (request.stereo > 0) {
     setup.episode.sensor.stereo.emplace();
     setup.episode.sensor.stereo->baseline = request.stereo;
@@ -204,7 +207,7 @@ Value settings_stated(const ExploreEvaluation& request, const Evaluation& of,
   stated.set("seed", static_cast<std::int64_t>(invocation.seed));
   stated.set("sigma", request.sigma);
   stated.set("dropped", request.dropped);
-  stated.set("smoothed", of.setup.episode.sensor.smoothed);
+  stated.set("smooth_to", request.smooth_to);
   stated.set("stereo", request.stereo);
   stated.set("lookahead", request.lookahead);
   stated.set("parameters", of.parameters);
@@ -223,7 +226,6 @@ Evaluation evaluation_of(const ExploreEvaluation& request, const Invocation& inv
   made.setup.episode.steps = request.steps;
   made.setup.episode.lookahead = request.lookahead;
   made.mapping = made.setup.set_mapping(request.mapping);
-  made.setup.set_smoothed(request.smoothed);
   made.moves = made.setup.set_moves(request.moves);
   set_depth(request, made.setup);
   for (const std::string& text : invocation.overrides) apply_override(made.parameters, text);

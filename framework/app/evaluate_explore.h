@@ -14,9 +14,9 @@ struct ExploreEvaluation {
   std::string up;                      // of mesh files, as `load_world` takes it
   std::int64_t episodes = 10;          // of each world, with the same starts for every utility
   int steps = 200, lookahead = 1;
-  double sigma = 0, dropped = 0;   // of the camera's depth (table 5.4); replayed without
-  std::optional<double> smoothed;  // m, to which that noise is smoothed; absent: half a voxel
-  double stereo = 0;               // m between a pair of cameras; 0: a depth camera
+  double sigma = 0, dropped = 0;  // of the camera's depth (table 5.4); replayed without
+  double smooth_to = 0;           // m, to which the noise of sigma is smoothed; 0: it is not
+  double stereo = 0;              // m between a pair of cameras; 0: a depth camera
   std::filesystem::path folder = "out/evaluate_explore";
   std::filesystem::path against;  // another evaluation's folder, from the same starts; or empty
   ItemOptions items;              // an item is an episode

@@ -194,7 +194,6 @@ GroundTruth ExplorationSetup::truth_of(const World& world) const {
 ExplorationSetup::ExplorationSetup() : map(Value::map()) {
   map.set("observations", true);
   set_mapping({});
-  set_smoothed({});
 }
 
 Value ExplorationSetup::set_mapping(const std::vector<std::string>& given) {
@@ -221,10 +220,6 @@ Value ExplorationSetup::set_mapping(const std::vector<std::string>& given) {
   for (const char* key : {"resolution", "hit", "miss"}) map.set(key, p.number(key));
   map.set("maximum_range", episode.sensor.range);
   return p.value();
-}
-
-void ExplorationSetup::set_smoothed(const std::optional<double>& given) {
-  episode.sensor.smoothed = given.value_or(map.at("resolution").as_number() / 2);
 }
 
 Value ExplorationSetup::set_moves(const std::vector<std::string>& given) {

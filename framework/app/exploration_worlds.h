@@ -65,8 +65,6 @@ struct ExplorationSetup {
   // "resolution=0.2": camera and map that a learned utility is good for, by the mission's names;
   // likewise.
   Value set_mapping(const std::vector<std::string>& given);
-  // To which the noise of the depth is smoothed, in m; absent: half a voxel of the mapping.
-  void set_smoothed(const std::optional<double>& given);
   // What an episode at its start cannot do in a world of this name, and the options that help.
   InputError with_options(const StartError& error, const std::string& world) const;
   GroundTruth truth_of(const World& world) const;

@@ -21,9 +21,6 @@ constexpr const char* kWorldHelp =
 constexpr const char* kMovesHelp =
     "step, turn_deg, body or clear, as in `moves` of a mission; repeatable; default: those of the "
     "mission";
-constexpr const char* kSmoothedHelp =
-    "standard deviation in m to which that noise is smoothed before the depth is mapped; 0: it is "
-    "not; default: half a voxel";
 constexpr const char* kMappingHelp =
     "width, height, view_deg, pitch_deg or range of the camera, resolution, hit or miss of the "
     "map, as in a mission; a model fits one set of them; repeatable; default: those of the mission";
@@ -213,9 +210,6 @@ void add_train_commands(CLI::App& app, Invocation& invocation, TrainRequest& req
            [&](const std::string& text) { request.sigma = read_within("--sigma", text, 100); });
   add_text(*dataset, "--dropped", "SHARE", "fraction of pixels without a measurement; default: 0",
            [&](const std::string& text) { request.dropped = read_within("--dropped", text, 1); });
-  add_text(*dataset, "--smoothed", "M", kSmoothedHelp, [&](const std::string& text) {
-    request.smoothed = read_within("--smoothed", text, 100);
-  });
   CLI::App* all = add("all", "train a model from nothing by a recipe: samples and fits in rounds");
   add_text(*all, "-o,--output", "PATH", "the model's file", [&](const std::string& path) {
     request.target = path;
@@ -270,9 +264,11 @@ void add_evaluate_explore(CLI::App& evaluate, Invocation& invocation, ExploreEva
            [&](const std::string& text) { request.sigma = read_within("--sigma", text, 100); });
   add_text(*made, "--dropped", "SHARE", "fraction of pixels without a measurement; default: 0",
            [&](const std::string& text) { request.dropped = read_within("--dropped", text, 1); });
-  add_text(*made, "--smoothed", "M", kSmoothedHelp, [&](const std::string& text) {
-    request.smoothed = read_within("--smoothed", text, 100);
-  });
+  add_text(
+      *made, "--smooth-to", "M",
+      "standard deviation in m to which the noise of --sigma is smoothed before depth is "
+      "mapped; default: 0, it is not smoothed",
+      [&](const std::string& text) { request.smooth_to = read_within("--smooth-to", text, 100); });
   add_text(*made, "--stereo", "M",
            "depth from a stereo pair with this baseline in m; default: a depth camera",
            [&](const std::string& text) { request.stereo = read_within("--stereo", text, 100); });

@@ -166,7 +166,6 @@ class RecipeRun {
       words.insert(words.end(), {"--episodes", "1", "--steps", std::to_string(line.steps)});
       if (line.sigma > 0) words.insert(words.end(), {"--sigma", plain_number(line.sigma)});
       if (line.dropped > 0) words.insert(words.end(), {"--dropped", plain_number(line.dropped)});
-      if (line.smoothed) words.insert(words.end(), {"--smoothed", plain_number(*line.smoothed)});
       words.insert(words.end(), {"--output", (in_work(name) / std::to_string(k + 1)).string()});
       ask(words, name + ", samples " + std::to_string(k + 1) + " of " +
                      std::to_string(lines.size()) + ": " + line.explorer + " explores");

@@ -117,7 +117,6 @@ Dataset dataset_of(const TrainRequest& request, const Invocation& invocation,
   ExplorationSetup setup;
   setup.episode.steps = request.steps;
   const Value mapping = setup.set_mapping(request.mapping);
-  setup.set_smoothed(request.smoothed);
   const Value moves = setup.set_moves(request.moves);
   setup.episode.show_truth = needs_truth(registry, request.explorer);
   setup.episode.cancellation = &cancellation;
@@ -145,7 +144,6 @@ Dataset dataset_of(const TrainRequest& request, const Invocation& invocation,
     made.set("up", request.up);
     made.set("sigma", request.sigma);
     made.set("dropped", request.dropped);
-    made.set("smoothed", setup.episode.sensor.smoothed);
     made.set("input", to_value(dataset.input));
     made.set("files", records.files);
     dataset.made_by.push_back(std::move(made));

@@ -22,7 +22,6 @@ struct TrainRequest {
   std::filesystem::path model;                    // score
   bool resume = false;                            // fit, all
   double sigma = 0, dropped = 0;                  // dataset: noise of the depth camera, m and share
-  std::optional<double> smoothed;                 // dataset: m, likewise; absent: half a voxel
   std::filesystem::path recipe;                   // all; empty: the shipped one
   std::optional<double> hours;                    // all: a share of the recipe's; none: all
   ItemOptions items;                              // dataset: an item is an episode

@@ -18,7 +18,7 @@ struct ViewSensor {
   double range = 20;  // m
   std::optional<DepthNoise> noise = std::nullopt;
   std::optional<StereoOptions> stereo = std::nullopt;
-  double smoothed = 0;  // m, to which the noise is smoothed; 0: it is not
+  double smooth_to = 0;  // m, to which `noise` is smoothed; 0: it is not
 
   // The image from there; `seed` is of its noise. Stereo comes first, noise on top of it.
   PosedDepthImage measure(const MeshScene& scene, const Viewpoint& view, std::uint64_t seed,
@@ -29,10 +29,10 @@ struct ViewSensor {
     if (noise) add_noise(image.image, *noise, seed);
     return image;
   }
-  // Before it is mapped; the thesis does nothing here. The noise of stereo stays: neighbours share
-  // it.
+  // Before it is mapped. The thesis does nothing here. Errors of stereo stay: neighbours share
+  // them.
   void smooth(PosedDepthImage& measured, int threads) const {
-    if (noise) smooth_depth(measured.image, noise->sigma, smoothed, threads);
+    if (noise) smooth_depth(measured.image, noise->sigma, smooth_to, threads);
   }
   // Without noise.
   PosedDepthImage look(const MeshScene& scene, const Viewpoint& view, int threads) const {

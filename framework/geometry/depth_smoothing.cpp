@@ -17,17 +17,18 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr int kRounds = 4;
-constexpr double kFirstWithin = 3;      // sigma: the first plane is one noisy pixel
+constexpr double kFirstWithin = 3;      // sigma: one noisy pixel is all that is known
 constexpr double kWithin = 2.5;         // sigma
 constexpr double kLeastOfPlane = 6;     // pixels
 constexpr double kMostVariance = 0.25;  // of a plane at its pixel, times sigma^2: that of 4 pixels
-constexpr double kSettled = 0.01;       // sigma
+constexpr double kFits = 1.4;           // sigma^2 left for each pixel of a window that is one plane
+constexpr double kLeastInverse = 1e-6;  // 1/m
 
 bool is_measured(float depth) {
   return depth > 0 && std::isfinite(depth);
 }
 
-// The measured pixels of a window: columns and rows from its middle, depth.
+// The measured pixels of a window: columns and rows from its pixel, depth.
 struct Window {
   static constexpr std::size_t kMost =
       (2 * kMostSmoothingReach + 1) * (2 * kMostSmoothingReach + 1);
@@ -35,12 +36,17 @@ struct Window {
   std::array<double, kMost> column, row, depth;
 };
 
+// At the border of the image the window is moved, so that it keeps its size.
 void fill(Window& window, const DepthImage& image, int x, int y, int reach) {
-  const int bottom = std::min(image.pinhole.height - 1, y + reach);
-  const int right = std::min(image.pinhole.width - 1, x + reach);
+  const auto first = [&](int at, int size) {
+    return std::clamp(at - reach, 0, std::max(0, size - 2 * reach - 1));
+  };
+  const int left = first(x, image.pinhole.width), top = first(y, image.pinhole.height);
+  const int right = std::min(image.pinhole.width - 1, left + 2 * reach);
+  const int bottom = std::min(image.pinhole.height - 1, top + 2 * reach);
   window.count = 0;
-  for (int v = std::max(0, y - reach); v <= bottom; ++v) {
-    for (int u = std::max(0, x - reach); u <= right; ++u) {
+  for (int v = top; v <= bottom; ++v) {
+    for (int u = left; u <= right; ++u) {
       const float depth = image.at(u, v);
       if (!is_measured(depth)) continue;
       window.column[window.count] = u - x;
@@ -50,42 +56,124 @@ void fill(Window& window, const DepthImage& image, int x, int y, int reach) {
   }
 }
 
-// Depth = plane (1, column, row), by least squares over the pixels within `most` of `before`.
-Vector3d fitted_plane(const Window& window, const Vector3d& before, double most, bool tilted) {
-  double n = 0, c = 0, r = 0, cc = 0, cr = 0, rr = 0, d = 0, cd = 0, rd = 0;
-  for (std::size_t k = 0; k < window.count; ++k) {
-    const double column = window.column[k], row = window.row[k], depth = window.depth[k];
-    const double expected = before[0] + column * before[1] + row * before[2];
-    const double weight = std::abs(depth - expected) <= most ? 1 : 0;
-    const double wc = weight * column, wr = weight * row;
-    n += weight;
-    c += wc;
-    r += wr;
-    cc += wc * column;
-    cr += wc * row;
-    rr += wr * row;
-    d += weight * depth;
-    cd += wc * depth;
-    rd += wr * depth;
+// Sums of a least squares problem in three unknowns.
+struct Sums {
+  double n = 0;  // pixels
+  double ww = 0, wc = 0, wr = 0, cc = 0, cr = 0, rr = 0, w = 0, c = 0, r = 0;
+
+  // A pixel's `slope` times (1, column, row) times the unknowns is `value`.
+  void add(double slope, double column, double row, double value) {
+    const double sc = slope * column, sr = slope * row;
+    ++n;
+    ww += slope * slope;
+    wc += slope * sc;
+    wr += slope * sr;
+    cc += sc * sc;
+    cr += sc * sr;
+    rr += sr * sr;
+    w += slope * value;
+    c += sc * value;
+    r += sr * value;
   }
-  if (n == 0) return before;
-  if (tilted && n >= kLeastOfPlane) {
+  Matrix3d inverse() const {
     Matrix3d normal;
-    normal << n, c, r, c, cc, cr, r, cr, rr;
-    const Matrix3d inverse = normal.inverse();
-    if (inverse.allFinite() && inverse(0, 0) < kMostVariance) return inverse * Vector3d(d, cd, rd);
+    normal << ww, wc, wr, wc, cc, cr, wr, cr, rr;
+    return normal.inverse();
   }
-  return {d / n, 0, 0};
-}
+  Vector3d right() const { return {w, c, r}; }
+};
+
+// A plane: 1 / depth = plane . (1, column, row).
+class Planes {
+ public:
+  Planes(const Window& window, double sigma) : window_(window), sigma_(sigma) {}
+
+  Vector3d around(double own) const {
+    double sum = 0, count = 0;
+    for (std::size_t k = 0; k < window_.count; ++k) {
+      if (std::abs(window_.depth[k] - own) > kFirstWithin * sigma_) continue;
+      sum += window_.depth[k];
+      ++count;
+    }
+    return {count / sum, 0, 0};
+  }
+
+  // Of the whole window; a level one where it does not determine a plane.
+  Vector3d through_all() const {
+    Sums sums;
+    double sum = 0;
+    for (std::size_t k = 0; k < window_.count; ++k) {
+      const double depth = window_.depth[k];
+      sums.add(depth * depth, window_.column[k], window_.row[k], depth);
+      sum += depth;
+    }
+    const Matrix3d inverse = sums.inverse();
+    if (sums.n >= kLeastOfPlane && inverse.allFinite()) {
+      const Vector3d plane = inverse * sums.right();
+      if (plane.allFinite()) return plane;
+    }
+    return {sums.n / sum, 0, 0};
+  }
+
+  Vector3d refined(Vector3d plane) const {
+    for (int round = 1; round < kRounds; ++round) {
+      Sums sums;
+      double sum = 0;
+      for (std::size_t k = 0; k < window_.count; ++k) {
+        const double expected = depth_of(plane, window_.column[k], window_.row[k]);
+        const double error = window_.depth[k] - expected;
+        if (!(std::abs(error) <= kWithin * sigma_)) continue;
+        sums.add(-expected * expected, window_.column[k], window_.row[k], error);
+        sum += window_.depth[k];
+      }
+      if (sums.n == 0) return plane;
+      plane = step_from(plane, sums, sum);
+    }
+    return plane;
+  }
+
+  // Squared errors over sigma^2; one that is too large counts as the largest that is not.
+  double unexplained(const Vector3d& plane) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < window_.count; ++k) {
+      const double error =
+          (window_.depth[k] - depth_of(plane, window_.column[k], window_.row[k])) / sigma_;
+      sum += std::abs(error) <= kWithin ? error * error : kWithin * kWithin;
+    }
+    return sum;
+  }
+
+ private:
+  // Not a number behind the horizon of the plane.
+  static double depth_of(const Vector3d& plane, double column, double row) {
+    const double inverse = plane[0] + column * plane[1] + row * plane[2];
+    return inverse > kLeastInverse ? 1 / inverse : std::nan("");
+  }
+
+  // With too few pixels, or all of them to one side, their mean.
+  static Vector3d step_from(const Vector3d& plane, const Sums& sums, double sum) {
+    const Vector3d level(sums.n / sum, 0, 0);
+    if (sums.n < kLeastOfPlane) return level;
+    const Matrix3d inverse = sums.inverse();
+    const Vector3d next = plane + inverse * sums.right();
+    const double depth = 1 / next[0];
+    const double variance = inverse(0, 0) * depth * depth * depth * depth;
+    return next.allFinite() && next[0] > kLeastInverse && variance < kMostVariance ? next : level;
+  }
+
+  const Window& window_;
+  double sigma_;
+};
 
 double smoothed(const Window& window, double own, double sigma) {
-  Vector3d plane = fitted_plane(window, {own, 0, 0}, kFirstWithin * sigma, false);
-  for (int round = 1; round < kRounds; ++round) {
-    const Vector3d before = plane;
-    plane = fitted_plane(window, before, kWithin * sigma, true);
-    if (std::abs(plane[0] - before[0]) < kSettled * sigma && round > 1) break;
-  }
-  return plane[0] > 0 ? plane[0] : own;
+  const Planes planes(window, sigma);
+  const Vector3d whole = planes.refined(planes.through_all());
+  const double depth = 1 / whole[0];
+  if (depth > 0 && std::abs(depth - own) < kFirstWithin * sigma &&
+      planes.unexplained(whole) < kFits * static_cast<double>(window.count))
+    return depth;
+  const double near = 1 / planes.refined(planes.around(own))[0];
+  return near > 0 ? near : own;
 }
 
 }  // namespace

@@ -14,14 +14,19 @@ inline constexpr int kMostSmoothingReach = 5;
 // with standard deviation `sigma` (m). 0: no smoothing is needed. At most kMostSmoothingReach.
 int smoothing_reach(double sigma, double wanted, double measured);
 
-// Replaces every measured depth by that of a plane through the pixels around it, as far as they
-// belong to the same surface: least squares in a window of smoothing_reach(), over the pixels
-// within 2.5 sigma of the plane, from the pixel's own depth on. With too few pixels their mean is
-// taken. Pixels without a measurement, and those that found nothing, stay as they are.
+// Replaces measured depths by those of planes through the pixels around them. A plane of the world
+// is linear in the inverse of depth. It is fitted by least squares (Gauss-Newton, in depth) to a
+// window of smoothing_reach(), without pixels that are 2.5 sigma off. Where the window is no single
+// plane, the fit begins with the pixels within 3 sigma of the pixel's own depth.
 //
-// Errors that neighbouring pixels share, as those of stereo, do not shrink. Rows are shared among
-// `threads`; the result is the same for any number. Throws InputError for a sigma or a `wanted`
-// that is negative or not finite. A `wanted` of 0 m smooths nothing.
+// Surfaces that are nearer to each other than about 5 sigma run into each other, and an obstacle
+// that is thinner than half a window vanishes if it is so near to what is behind it: a map of
+// smoothed depth is less careful than one of noisy depth.
+//
+// Pixels without a measurement, and those that found nothing, stay as they are. Errors that
+// neighbouring pixels share, as those of stereo, do not shrink. Rows are shared among `threads`;
+// the result is the same for any number. Throws InputError for a sigma or a `wanted` that is
+// negative or not finite. A `wanted` of 0 m smooths nothing.
 void smooth_depth(DepthImage& image, double sigma, double wanted, int threads);
 
 }  // namespace lapwing

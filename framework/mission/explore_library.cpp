@@ -26,10 +26,10 @@ ParameterTable explore_table() {
   ParameterTable noise;
   noise.number("dropped", 0, "", "fraction of pixels without a measurement", between(0, 1))
       .number("sigma", 0, "m", "standard deviation of the depth", between(0, 100))
-      .optional_number("smoothed", "m",
-                       "standard deviation to which the depth is smoothed; 0: it is not; absent: "
-                       "half a voxel",
-                       between(0, 100));
+      .number("smooth_to", 0, "m",
+              "standard deviation to which the noise is smoothed before depth is mapped; 0: it is "
+              "not",
+              between(0, 100));
   ParameterTable start;
   start.required_numbers("position", 3, "m", "world").number("yaw", 0, "rad", "heading");
   ParameterTable bounds;
@@ -73,7 +73,7 @@ struct ExplorationObject {
   std::shared_ptr<Exploration> exploration;
 };
 
-EpisodeSettings settings_of(const Parameters& given, double resolution, const MissionRun& run) {
+EpisodeSettings settings_of(const Parameters& given, const MissionRun& run) {
   EpisodeSettings s;
   const Parameters& camera = given.table("camera");
   s.sensor.pinhole = centered_pinhole(static_cast<int>(camera.integer("width")),
@@ -83,7 +83,10 @@ EpisodeSettings settings_of(const Parameters& given, double resolution, const Mi
   const Parameters& noise = given.table("noise");
   if (noise.number("dropped") > 0 || noise.number("sigma") > 0)
     s.sensor.noise = DepthNoise{noise.number("dropped"), noise.number("sigma")};
-  s.sensor.smoothed = noise.has("smoothed") ? noise.number("smoothed") : resolution / 2;
+  s.sensor.smooth_to = noise.number("smooth_to");
+  if (s.sensor.smooth_to > 0 && noise.number("sigma") == 0)
+    throw InputError(noise.origin("smooth_to"),
+                     "smooth_to: there is no noise to smooth; expected sigma above 0 with it");
   if (given.has("stereo_baseline")) {
     s.sensor.stereo.emplace();
     s.sensor.stereo->baseline = given.number("stereo_baseline");
@@ -309,16 +312,16 @@ int explore_surface(lua_State* state) try {
   const PluginChoice chosen = plugin_choice(state, -1, "utility");
   const Registry& registry = *run.settings.registry;
   auto e = std::make_shared<Exploration>();
-  const auto new_map = [&registry, map] {
-    return registry.create<Map>(map.type, map.parameters, "map");
-  };
-  e->map = new_map();
-  e->settings = settings_of(given, e->map->grid().resolution(), run);
+  e->settings = settings_of(given, run);
   e->settings.show_truth = needs_truth(registry, chosen.type);
   e->settings.list_candidates = true;
   if (given.tables("start").size() > 1)
     throw InputError(given.origin("start"), "start: at most one");
   const auto utility = registry.create<ViewUtility>(chosen.type, chosen.parameters, "utility");
+  const auto new_map = [&registry, map] {
+    return registry.create<Map>(map.type, map.parameters, "map");
+  };
+  e->map = new_map();
   const Sandbox::ClockPause pause(Sandbox::of(state));
   const GroundTruth truth = truth_for(surface, given, e->map->grid().resolution());
   e->start = start_in(truth, given, e->settings, run.settings.seed);

@@ -355,8 +355,8 @@ Facts settings_facts(const ExplorationFigures& asked) {
   add("starts by seed", std::to_string(settings.at("seed").as_integer()));
   if (number_of("sigma") > 0 || number_of("dropped") > 0) {
     add("noise of the depth", plain_number(number_of("sigma")), "m");
-    if (number_of("smoothed") > 0 && number_of("smoothed") < number_of("sigma"))
-      add("smoothed to", plain_number(number_of("smoothed")), "m");
+    if (number_of("smooth_to") > 0)
+      add("smoothed towards", plain_number(number_of("smooth_to")), "m");
     add("pixels dropped", plain_number(100 * number_of("dropped")), "%");
   }
   if (number_of("stereo") > 0) add("stereo, apart", plain_number(number_of("stereo")), "m");

@@ -51,9 +51,6 @@ RecipeSamples samples_from(Fields& fields, bool has_model) {
   samples.steps = fields.integer("steps", 1, kMostSteps);
   samples.sigma = fields.optional_number("sigma").value_or(0);
   samples.dropped = fields.optional_number("dropped").value_or(0);
-  samples.smoothed = fields.optional_number("smoothed");
-  if (samples.smoothed && *samples.smoothed < 0)
-    fields.add_error("smoothed", "expected at least 0 m");
   if (samples.sigma < 0) fields.add_error("sigma", "expected at least 0 m");
   if (samples.dropped < 0 || samples.dropped > 1)
     fields.add_error("dropped", "expected a share from 0 to 1");

@@ -10,14 +10,13 @@
 //     - samples:
 //         - {scenes: [mine, depot], seeds: [1, 48], explorer: oracle, steps: 100}
 //         - {scenes: [mine], seeds: [401, 424], explorer: itself, steps: 100,
-//            sigma: 0.5, dropped: 0.4, smoothed: 0}
+//            sigma: 0.5, dropped: 0.4}
 //       fit: {epochs: 3}           # parameters of `train fit`
 //
 // The explorer `itself` is the utility with the model of the round before.
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,8 +30,7 @@ struct RecipeSamples {
   std::int64_t first = 1, last = 1;  // seeds
   std::string explorer;
   int steps = 100;
-  double sigma = 0, dropped = 0;   // noise of the depth camera
-  std::optional<double> smoothed;  // m, to which it is smoothed; absent: half a voxel
+  double sigma = 0, dropped = 0;  // noise of the depth camera
 
   // "mine:1-48", for --world.
   std::vector<std::string> worlds() const;

@@ -23,9 +23,9 @@ local CAMERA = {
   { name = "pitch_deg", type = "number", unit = "deg", default = -10, minimum = -89, maximum = 89,
     summary = "pitch of every view, positive upwards" },
   range, dropped, sigma,
-  { name = "smoothed", type = "number", unit = "m", minimum = 0, maximum = 100,
-    summary = "standard deviation to which the noise of the depth is smoothed before it is mapped; "
-      .. "0: it is not; absent: half a voxel" },
+  { name = "smooth_to", type = "number", unit = "m", default = 0, minimum = 0, maximum = 100,
+    summary = "standard deviation to which the noise of `sigma` is smoothed before depth is mapped; "
+      .. "0: it is not" },
   { name = "stereo_baseline", type = "number", unit = "m", above = 0,
     summary = "baseline of a stereo pair; absent: a depth camera" },
 }
@@ -156,7 +156,7 @@ function M.explore(run, surface)
     surface = surface, map = map_of(o), utility = o.utility,
     camera = { width = c.width, height = c.height, view_deg = c.view_deg,
                pitch_deg = c.pitch_deg },
-    range = c.range, noise = { dropped = c.dropped, sigma = c.sigma, smoothed = c.smoothed },
+    range = c.range, noise = { dropped = c.dropped, sigma = c.sigma, smooth_to = c.smooth_to },
     stereo_baseline = c.stereo_baseline,
     step = m.step, turn_deg = m.turn_deg, body = m.body, clear = m.clear, visits = m.visits,
     speed = m.speed, turn_rate_deg = m.turn_rate_deg, acceleration = m.acceleration,

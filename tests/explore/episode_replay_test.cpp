@@ -35,7 +35,7 @@ TEST_P(Replayed, HasEveryVoxelAsTheExplorerKnewIt) {
   YardWorld world(20);
   if (GetParam()) {
     world.settings.sensor.noise = DepthNoise{0.05, 0.3};
-    world.settings.sensor.smoothed = 0.1;
+    world.settings.sensor.smooth_to = 0.1;
   }
   const auto utility = plugins().create<ViewUtility>("proximity_count", Value::map());
   EpisodeReplay replay(

@@ -354,8 +354,8 @@ TEST(Episode, SmoothedDepthIsMappedInPlaceOfTheNoisyOne) {
   world.settings.sensor.noise = DepthNoise{0.4, 1};
   world.settings.show_truth = true;
   const MeshDistance surface(world.truth.shared_scene(), 20);
-  const auto share_astray = [&](double smoothed) {
-    world.settings.sensor.smoothed = smoothed;
+  const auto share_astray = [&](double smooth_to) {
+    world.settings.sensor.smooth_to = smooth_to;
     ObservedSurface observed(world.truth, world.settings.sensor, YardWorld::new_map);
     const auto map = YardWorld::new_map();
     explore(world.settings, world.start, world.truth, observed, Oracle(), *map);

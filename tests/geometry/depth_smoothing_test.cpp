@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "framework/core/error.h"
 #include "framework/geometry/depth_camera.h"
@@ -44,7 +45,7 @@ Errors errors(const DepthImage& image, const DepthImage& truth, Among among) {
       squares += error * error;
       found.worst = std::max(found.worst, std::abs(error));
     }
-  EXPECT_GT(count, 500);
+  EXPECT_GT(count, 100);
   found.mean = sum / count;
   found.deviation = std::sqrt(squares / count - found.mean * found.mean);
   return found;
@@ -81,20 +82,35 @@ TEST(DepthSmoothing, AWallAndASlopingPlaneAreFreeOfNoiseAndOfBias) {
     const Errors left = errors(image, truth, kInside);
     EXPECT_LT(left.deviation, 0.25);
     EXPECT_LT(std::abs(left.mean), 0.02);
+    const Errors outside =
+        errors(image, truth, [](int x, int y) { return !kInside(x, y); });  // cut windows are moved
+    EXPECT_LT(outside.deviation, 0.4);
   }
 }
 
+// Below a camera that looks ahead and 10 degrees down, up to the range: the rows are metres apart.
 TEST(DepthSmoothing, GroundThatRunsAwayKeepsItsDepth) {
-  // 3 m below a level camera: the depth of row y is 3 * 80 / (y - 59.5).
-  const DepthImage ground =
-      image_of([](int, int y) { return y < 70 ? kNothing : 3 * 80 / (y - 59.5); });
-  DepthImage image = measured(ground, kVeryHigh);
-  smooth_depth(image, kVeryHigh.sigma, 0.2, 1);
-  const Errors left = errors(image, ground, [](int x, int y) {
-    return kInside(x, y) && y >= 80;  // nearer than 12 m
-  });
-  EXPECT_LT(left.deviation, 0.25);
-  EXPECT_LT(std::abs(left.mean), 0.05);
+  for (const double height : {1, 2, 3}) {
+    const DepthImage ground = image_of([height](int, int y) {
+      const double down = (y - 59.5) / 80, pitch = 10 * std::numbers::pi / 180;
+      const double fall = down * std::cos(pitch) + std::sin(pitch);
+      const double depth = height / fall;
+      return fall > 0 && depth < 20 ? depth : std::numeric_limits<double>::infinity();
+    });
+    for (const double sigma : {0.5, 1.0}) {
+      DepthImage image = measured(ground, {.dropped = 0.4, .sigma = sigma});
+      smooth_depth(image, sigma, 0.2, 1);
+      for (const auto& [nearest, farthest] : {std::pair{2, 5}, {5, 10}, {10, 20}}) {
+        const auto among = [&](int x, int y) {
+          const auto depth = static_cast<double>(ground.at(x, y));
+          return depth >= nearest && depth < farthest && y > 0;
+        };
+        const Errors left = errors(image, ground, among);
+        EXPECT_LT(left.deviation, 0.4) << height << " m, sigma " << sigma << ", " << nearest;
+        EXPECT_LT(std::abs(left.mean), 0.12) << height << " m, sigma " << sigma << ", " << nearest;
+      }
+    }
+  }
 }
 
 TEST(DepthSmoothing, NothingIsInventedBetweenTwoSurfaces) {
@@ -105,6 +121,22 @@ TEST(DepthSmoothing, NothingIsInventedBetweenTwoSurfaces) {
       errors(image, edge, [](int x, int y) { return kInside(x, y) && x >= 76 && x < 84; });
   EXPECT_LT(left.deviation, 0.35);
   EXPECT_LT(left.worst, 3);  // the gap is 8 m wide
+}
+
+TEST(DepthSmoothing, AThinPoleStaysIfItIsFarFromTheWall) {
+  const auto is_pole = [](int x, int y) { return x % 20 == 10 && kInside(x, y); };
+  const DepthImage poles = image_of([](int x, int) { return x % 20 == 10 ? 6 : 12; });
+  DepthImage image = measured(poles, kVeryHigh);
+  smooth_depth(image, kVeryHigh.sigma, 0.2, 1);
+  double count = 0, kept = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      if (is_pole(x, y) && image.at(x, y) > 0) {
+        ++count;
+        if (image.at(x, y) < 9) ++kept;
+      }
+  EXPECT_GT(count, 300);
+  EXPECT_GT(kept / count, 0.95);
 }
 
 TEST(DepthSmoothing, GapsAndTheSkyStayAndSoDoesDepthThatIsGoodEnough) {

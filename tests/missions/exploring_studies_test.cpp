@@ -145,8 +145,9 @@ TEST_F(Exploring, AnEvaluationGoesOnWhereItWasStopped) {
             "expected seeds up to 9007199254740991");
   for (const char* noise :
        {"--sigma nan", "--sigma -1", "--sigma inf", "--dropped -3", "--dropped 1.5",
-        "--dropped nan", "--smoothed -1", "--smoothed x", "--stereo nan", "--stereo -1"})
+        "--dropped nan", "--smooth-to -1", "--smooth-to x", "--stereo nan", "--stereo -1"})
     refused(noise, folder_ / "noise", "expected a number from 0 to");
+  refused("--smooth-to 0.2 --dropped 0.4", folder_ / "noise", "no noise to smooth");
   EXPECT_EQ(evaluate("--moves clear=0.5", folder_ / "small"), 2);  // the body does not fit
   EXPECT_EQ(evaluate("--moves leap=3", folder_ / "unknown"), 2);
 }
@@ -182,6 +183,11 @@ TEST_F(Exploring, AnEvaluationIsComparedWithAnother) {
   for (int k = 0; k < 2; ++k)
     ratios[k] = efficiency("noisy", names[k]) / efficiency("clear", names[k]);
   EXPECT_LT(ratios[0] + ratios[1], 1.9) << "noise that costs nothing shows nothing";
+  ASSERT_EQ(evaluate("--dropped 0.9 --sigma 2 --smooth-to 0.5", "smooth"), 0) << read_file(errors);
+  EXPECT_NE(efficiency("smooth", names[0]) + efficiency("smooth", names[1]),
+            efficiency("noisy", names[0]) + efficiency("noisy", names[1]));
+  EXPECT_EQ(evaluate("--resume --dropped 0.9 --sigma 2", "smooth"), 2);
+  EXPECT_NE(read_file(errors).find("smooth_to"), std::string::npos) << read_file(errors);
   std::map<std::string, std::vector<std::string>> rows;  // by world
   std::istringstream table(read_file(folder_ / "noisy/table.csv"));
   for (std::string line, cell; std::getline(table, line);) {

@@ -125,17 +125,22 @@ TEST_F(Exploring, WithoutAnImageThereIsNoPlan) {
   }
 }
 
-// By default to half a voxel, and not at all where that is asked for.
-TEST_F(Exploring, NoiseIsSmoothedToHalfAVoxel) {
-  const auto map = [&](const char* more, const char* out) {
+TEST_F(Exploring, NoiseIsSmoothedWhereThatIsAskedFor) {
+  const auto map = [&](const std::string& more, const char* out) {
     const Flown flown =
-        explore(std::string("--set compare=false --set steps=2 --set camera.sigma=1 ") + more, out);
+        explore("--set compare=false --set steps=2 --set camera.sigma=1" + more, out);
+    EXPECT_TRUE(fs::exists(flown.folder / "map.ot")) << out;
     return read_file(flown.folder / "map.ot");
   };
-  const std::string as_is = map("", "as_is");
-  EXPECT_EQ(map("--set camera.smoothed=0.2", "stated"), as_is);  // voxels of 0.4 m
-  EXPECT_NE(map("--set camera.smoothed=0", "noisy"), as_is);
-  EXPECT_NE(map("--set camera.smoothed=0.5", "less"), as_is);
+  const std::string noisy = map("", "noisy");
+  EXPECT_EQ(map(" --set camera.smooth_to=0", "zero"), noisy);
+  const std::string smooth = map(" --set camera.smooth_to=0.2", "smooth");
+  EXPECT_NE(smooth, noisy);
+  EXPECT_NE(map(" --set camera.smooth_to=0.4", "less"), smooth);
+  EXPECT_NE(refusal(few("--set camera.smooth_to=0.2")).find("there is no noise to smooth"),
+            std::string::npos);
+  EXPECT_NE(refusal(few("--set camera.sigma=1 --set camera.smooth_to=-1")).find("smooth_to"),
+            std::string::npos);
 }
 
 // What noise puts into the map is no surface that was found.

@@ -77,7 +77,6 @@ TEST_F(Exploring, SamplesAreKept) {
            {"--explorer frontier", "explorer is \"oracle\" there"},
            {"--moves clear=5", "moves is"},
            {"--sigma 0.3", "sigma is 0.0 there"},
-           {"--smoothed 0", "smoothed is 0.2 there"},
            {"--set rays.rows=12", "input is"}}) {
     EXPECT_EQ(made(std::string("--resume --episodes 2 ") + more), 2) << more;
     EXPECT_THAT(read_file(errors), testing::HasSubstr(expected)) << more;

@@ -32,7 +32,7 @@ class ExplorationFiles : public ::testing::Test {
     ExplorationFigures figures;
     figures.folder = base_ / "now";
     figures.settings = from_json(
-        R"({"seed": 7, "sigma": 0.02, "dropped": 0.25, "smoothed": 0.01, "stereo": 0,
+        R"({"seed": 7, "sigma": 0.02, "dropped": 0.25, "smooth_to": 0.01, "stereo": 0,
             "lookahead": 1, "moves": {"step": 0.5}, "mapping": {}, "parameters": {}})",
         "settings");
     figures.worlds = std::move(worlds);
@@ -284,6 +284,7 @@ TEST_F(ExplorationFiles, TheSameFilesGiveTheSameBytes) {
   // What was asked stands in the report, in the units of its label.
   EXPECT_NE(once.find("noise of the depth"), once.npos);
   EXPECT_NE(once.find("pixels dropped"), once.npos);
+  EXPECT_NE(once.find("smoothed towards"), once.npos);
   EXPECT_EQ(once.find("stereo, apart"), once.npos) << "there was none";
 }
 

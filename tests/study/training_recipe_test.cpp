@@ -24,8 +24,7 @@ rounds:
       - {scenes: [mine, depot], seeds: [1, 10], explorer: oracle, steps: 5}
     fit: {epochs: 2}
   - samples:
-      - {scenes: [mine], seeds: [11, 11], explorer: itself, steps: 5, sigma: 0.5,
-         dropped: 0.4, smoothed: 0}
+      - {scenes: [mine], seeds: [11, 11], explorer: itself, steps: 5, sigma: 0.5, dropped: 0.4}
 )";
 
 class RecipeFile : public testing::Test {
@@ -86,7 +85,6 @@ TEST_F(RecipeFile, WhatIsWrongIsNamed) {
       {"scenes: [mine, depot]", "scenes: []", "names of scenes"},
       {"sigma: 0.5", "sigma: -1", "at least 0 m"},
       {"dropped: 0.4", "dropped: 2", "from 0 to 1"},
-      {"smoothed: 0", "smoothed: -1", "at least 0 m"},
       {"dropped: 0.4", "droped: 2", "droped"}};
   for (const auto& [part, other, expected] : cases) {
     const std::string said = refusal(part, other);
