@@ -24,8 +24,8 @@ local CAMERA = {
     summary = "pitch of every view, positive upwards" },
   range, dropped, sigma,
   { name = "smooth_to", type = "number", unit = "m", default = 0, minimum = 0, maximum = 100,
-    summary = "standard deviation to which the noise of `sigma` is smoothed before depth is mapped; "
-      .. "0: it is not" },
+    summary = "standard deviation to which the noise of `sigma` is smoothed before depth is "
+      .. "mapped; 0: it is not" },
   { name = "stereo_baseline", type = "number", unit = "m", above = 0,
     summary = "baseline of a stereo pair; absent: a depth camera" },
 }

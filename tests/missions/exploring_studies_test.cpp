@@ -183,10 +183,16 @@ TEST_F(Exploring, AnEvaluationIsComparedWithAnother) {
   for (int k = 0; k < 2; ++k)
     ratios[k] = efficiency("noisy", names[k]) / efficiency("clear", names[k]);
   EXPECT_LT(ratios[0] + ratios[1], 1.9) << "noise that costs nothing shows nothing";
-  ASSERT_EQ(evaluate("--dropped 0.9 --sigma 2 --smooth-to 0.5", "smooth"), 0) << read_file(errors);
-  EXPECT_NE(efficiency("smooth", names[0]) + efficiency("smooth", names[1]),
-            efficiency("noisy", names[0]) + efficiency("noisy", names[1]));
-  EXPECT_EQ(evaluate("--resume --dropped 0.9 --sigma 2", "smooth"), 2);
+  // Smoothed depth leads elsewhere, and is another evaluation.
+  const std::string ten = "--episodes 1 --steps 10";
+  ASSERT_EQ(evaluate("--sigma 2", "raw", ten), 0) << read_file(errors);
+  ASSERT_EQ(evaluate("--sigma 2 --smooth-to 0.5", "smooth", ten), 0) << read_file(errors);
+  const auto observed = [&](const char* folder) {
+    const fs::path path = folder_ / folder / "episodes" / names[0];
+    return to_json(from_json(read_file(path), "episode").at("observed"));
+  };
+  EXPECT_NE(observed("smooth"), observed("raw"));
+  EXPECT_EQ(evaluate("--resume --sigma 2", "smooth", ten), 2);
   EXPECT_NE(read_file(errors).find("smooth_to"), std::string::npos) << read_file(errors);
   std::map<std::string, std::vector<std::string>> rows;  // by world
   std::istringstream table(read_file(folder_ / "noisy/table.csv"));
