@@ -184,11 +184,11 @@ TEST_F(Exploring, AnEvaluationIsComparedWithAnother) {
     ratios[k] = efficiency("noisy", names[k]) / efficiency("clear", names[k]);
   EXPECT_LT(ratios[0] + ratios[1], 1.9) << "noise that costs nothing shows nothing";
   // Smoothed depth leads elsewhere, and is another evaluation.
-  const std::string ten = "--episodes 1 --steps 10";
+  const std::string ten = "--utility proximity_count --episodes 1 --steps 10";
   ASSERT_EQ(evaluate("--sigma 2", "raw", ten), 0) << read_file(errors);
   ASSERT_EQ(evaluate("--sigma 2 --smooth-to 0.5", "smooth", ten), 0) << read_file(errors);
   const auto observed = [&](const char* folder) {
-    const fs::path path = folder_ / folder / "episodes" / names[0];
+    const fs::path path = folder_ / folder / "episodes/yard.obj_proximity_count_1.json";
     return to_json(from_json(read_file(path), "episode").at("observed"));
   };
   EXPECT_NE(observed("smooth"), observed("raw"));
