@@ -170,7 +170,7 @@ TEST_F(Reproduced, RankCorrelationAndNoise) {
     }
   EXPECT_EQ(ranked, 10);
   const auto noise = cells(table("5.4"));
-  for (const char* level : {"low", "medium", "high", "very high", "stereo"})
+  for (const char* level : {"low", "medium", "high", "very high", "stereo", "very high, smoothed"})
     EXPECT_GT(noise.at({"suburb, default of Lapwing", level}), 0.3) << level;
 }
 
