@@ -145,7 +145,7 @@ TEST_F(Exploring, AnEvaluationGoesOnWhereItWasStopped) {
             "expected seeds up to 9007199254740991");
   for (const char* noise :
        {"--sigma nan", "--sigma -1", "--sigma inf", "--dropped -3", "--dropped 1.5",
-        "--dropped nan", "--smooth-to -1", "--smooth-to x", "--stereo nan", "--stereo -1"})
+        "--dropped nan", "--smooth-to -1", "--smooth-to nan", "--stereo nan", "--stereo -1"})
     refused(noise, folder_ / "noise", "expected a number from 0 to");
   refused("--smooth-to 0.2 --dropped 0.4", folder_ / "noise", "no noise to smooth");
   EXPECT_EQ(evaluate("--moves clear=0.5", folder_ / "small"), 2);  // the body does not fit
