@@ -19,9 +19,9 @@ int smoothing_reach(double sigma, double wanted, double measured);
 // window of smoothing_reach(), without pixels that are 2.5 sigma off. Where the window is no single
 // plane, the fit begins with the pixels within 3 sigma of the pixel's own depth.
 //
-// Surfaces that are nearer to each other than about 5 sigma run into each other, and an obstacle
-// that is thinner than half a window vanishes if it is so near to what is behind it: a map of
-// smoothed depth is less careful than one of noisy depth.
+// Surfaces that are nearer to each other than about 8 sigma may run into each other, and an
+// obstacle that is thinner than half a window vanishes if it is so near to what is behind it: a map
+// of smoothed depth is less careful than one of noisy depth.
 //
 // Pixels without a measurement, and those that found nothing, stay as they are. Errors that
 // neighbouring pixels share, as those of stereo, do not shrink. Rows are shared among `threads`;

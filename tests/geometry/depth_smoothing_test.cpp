@@ -120,7 +120,7 @@ TEST(DepthSmoothing, NothingIsInventedBetweenTwoSurfaces) {
   const Errors left =
       errors(image, edge, [](int x, int y) { return kInside(x, y) && x >= 76 && x < 84; });
   EXPECT_LT(left.deviation, 0.35);
-  EXPECT_LT(left.worst, 3);  // the gap is 8 m wide
+  EXPECT_LT(left.worst, 3);  // the gap is 8 sigma wide
 }
 
 TEST(DepthSmoothing, AThinPoleStaysIfItIsFarFromTheWall) {
