@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "framework/app/command_line.h"
+#include "framework/app/input_checksums.h"
 #include "framework/app/item_command.h"
 #include "framework/app/mission_loading.h"
 #include "framework/app/progress_line.h"
@@ -117,25 +118,13 @@ ScanCase case_of(const fs::path& script, std::uint64_t seed, const Invocation& g
   return std::move(*found);
 }
 
-// Of all files of a folder, names included.
-std::string sha256_of_folder(const fs::path& folder) {
-  std::vector<fs::path> files;
-  for (const auto& item : fs::recursive_directory_iterator(folder))
-    if (item.is_regular_file()) files.push_back(item.path());
-  std::sort(files.begin(), files.end());
-  std::string all;
-  for (const fs::path& file : files)
-    all += file.lexically_relative(folder).string() + " " + sha256(read_file(file)) + "\n";
-  return sha256(all);
-}
-
 // What rows depend on beside the study's own lists: scripts, those that they call, the options that
 // come of them and of configurations, mesh files, the program's version.
 Value statement_of(const std::vector<fs::path>& scripts, const Invocation& invocation,
                    const Registry& registry) {
   Value value = Value::map();
   value.set("version", LAPWING_VERSION);
-  value.set("shipped", sha256_of_folder(shipped_folder("scripts")));
+  value.set("shipped", checksum_of_folder(shipped_folder("scripts")));
   Value& list = value.set("missions", Value::list());
   for (const fs::path& script : scripts) {
     Value entry = Value::map();

@@ -11,6 +11,7 @@
 #include "framework/core/json.h"
 #include "framework/core/portable.h"
 #include "framework/core/visible_text.h"
+#include "framework/geometry/depth_smoothing.h"
 #include "framework/items/statement.h"
 #include "framework/mission/explore_library.h"
 #include "framework/study/exploration_figures.h"
@@ -189,8 +190,10 @@ void set_depth(const ExploreEvaluation& request, ExplorationSetup& setup) {
   if (request.sigma > 0 || request.dropped > 0)
     setup.episode.sensor.noise = DepthNoise{request.dropped, request.sigma};
   setup.episode.sensor.smooth_to = request.smooth_to;
-  if (request.smooth_to > 0 && request.sigma == 0)
-    throw InputError("--smooth-to: there is no noise to smooth; expected --sigma above 0 with it");
+  if (request.smooth_to > 0)
+    if (const std::string why = why_not_smoothed(request.sigma, request.smooth_to, request.dropped);
+        !why.empty())
+      throw InputError("--smooth-to: " + why);
   if (request.stereo > 0) {
     setup.episode.sensor.stereo.emplace();
     setup.episode.sensor.stereo->baseline = request.stereo;

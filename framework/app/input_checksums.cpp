@@ -7,6 +7,7 @@
 
 #include "framework/core/checksum.h"
 #include "framework/core/files.h"
+#include "framework/core/library_path.h"
 
 namespace lapwing {
 
@@ -49,6 +50,13 @@ Value plugin_checksums(const Registry& registry) {
     value.set(entry.kind + " " + entry.name, sum);
   }
   return value;
+}
+
+std::string program_checksum() {
+  std::string all = sha256(read_file("/proc/self/exe"));
+  if (const fs::path library = library_file(); !library.empty())
+    all += " " + sha256(read_file(library));
+  return sha256(all);
 }
 
 }  // namespace lapwing

@@ -24,4 +24,7 @@ void add_script_checksums(const std::filesystem::path& script, const std::filesy
 // Of the libraries that a command may load, by kind and name.
 Value plugin_checksums(const Registry& registry);
 
+// Of this program: its executable and liblapwing.
+std::string program_checksum();
+
 }  // namespace lapwing

@@ -142,6 +142,7 @@ class Reproducing {
       if (!fs::exists(answer_of(made_.studies[k].name))) ask(made_.studies[k], words_[k]);
     std::map<RecordSource, Value::List> records;
     for (const RecordSource& source : record_sources(made_)) records[source] = records_of(source);
+    if (!asked_.quick) require_records(made_, records);
     ReproducedTable table = reproduced_table(made_, records, caption());
     for (const ReproducedPictures& asked : made_.pictures) table.pictures.push_back(drawn(asked));
     table.warnings = outcomes();
@@ -194,6 +195,7 @@ class Reproducing {
     Value stated = Value::map();
     stated.set("format", 1);
     stated.set("program", std::string("lapwing ") + program_version());
+    stated.set("executable", program_checksum());
     stated.set("table", made_.owner);
     stated.set("quick", asked_.quick);
     stated.set("studies", made_.checksum_of_studies());

@@ -5,10 +5,12 @@
 
 #include "framework/app/child_command.h"
 #include "framework/app/exploration_worlds.h"
+#include "framework/app/input_checksums.h"
 #include "framework/app/interruption.h"
 #include "framework/app/item_command.h"
 #include "framework/app/train_command.h"
 #include "framework/config/shipped.h"
+#include "framework/core/checksum.h"
 #include "framework/core/file_set.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
@@ -107,6 +109,9 @@ class RecipeRun {
     Value stated = Value::map();
     stated.set("format", 1);
     stated.set("program", std::string("lapwing ") + program_version());
+    stated.set("executable", program_checksum());
+    stated.set("plugins", sha256(to_json(plugin_checksums(invocation_.registry()))));
+    stated.set("scripts", checksum_of_folder(shipped_folder("scripts")));
     stated.set("recipe", recipe_.checksum);
     stated.set("hours", request_.hours.value_or(recipe_.hours));
     Value& mapping = stated.set("mapping", Value::list());

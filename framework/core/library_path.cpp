@@ -5,12 +5,16 @@
 
 namespace lapwing {
 
-std::filesystem::path library_folder() {
+std::filesystem::path library_file() {
   Dl_info info{};
-  if (::dladdr(reinterpret_cast<const void*>(&library_folder), &info) == 0) return {};
+  if (::dladdr(reinterpret_cast<const void*>(&library_file), &info) == 0) return {};
   std::error_code code;
   const std::filesystem::path library = std::filesystem::canonical(info.dli_fname, code);
-  return code ? std::filesystem::path() : library.parent_path();
+  return code ? std::filesystem::path() : library;
+}
+
+std::filesystem::path library_folder() {
+  return library_file().parent_path();
 }
 
 }  // namespace lapwing

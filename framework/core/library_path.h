@@ -6,7 +6,10 @@
 
 namespace lapwing {
 
-// The folder that holds liblapwing, links resolved; empty when the system cannot tell.
+// liblapwing, links resolved; empty when the system cannot tell.
+std::filesystem::path library_file();
+
+// The folder that holds it.
 std::filesystem::path library_folder();
 
 }  // namespace lapwing

@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 
 #include "framework/core/error.h"
+#include "framework/core/number_text.h"
 #include "framework/core/parallel.h"
 
 namespace lapwing {
@@ -184,6 +185,18 @@ int smoothing_reach(double sigma, double wanted, double measured) {
   int reach = 1;
   while (reach < kMostSmoothingReach && (2 * reach + 1) * (2 * reach + 1) < pixels) ++reach;
   return reach;
+}
+
+std::string why_not_smoothed(double sigma, double wanted, double dropped) {
+  if (sigma == 0) return "there is no noise to smooth; expected sigma above 0 with it";
+  if (wanted >= sigma)
+    return "there is nothing to smooth; expected less than sigma, which is " + plain_number(sigma) +
+           " m";
+  constexpr int kWidest = 2 * kMostSmoothingReach + 1;
+  const double least = sigma / (kWidest * std::sqrt(1 - dropped));
+  if (wanted >= least) return "";
+  return "the largest window, " + std::to_string(kWidest) + " x " + std::to_string(kWidest) +
+         " pixels, reaches " + plain_number(least, 3) + " m; expected at least that";
 }
 
 void smooth_depth(DepthImage& image, double sigma, double wanted, int threads) {

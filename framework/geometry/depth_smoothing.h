@@ -2,6 +2,8 @@
 // Noisy depth, smoothed.
 #pragma once
 
+#include <string>
+
 #include "framework/geometry/depth_image.h"
 
 namespace lapwing {
@@ -13,6 +15,11 @@ inline constexpr int kMostSmoothingReach = 5;
 // standard deviation of at most `wanted` metres; `measured` is their share. Each errs by itself,
 // with standard deviation `sigma` (m). 0: no smoothing is needed. At most kMostSmoothingReach.
 int smoothing_reach(double sigma, double wanted, double measured);
+
+// Why depth cannot be smoothed to `wanted` m, as the end of a message; "" where it can: there is
+// noise, `wanted` is below `sigma`, and the largest window comes so far where a pixel is dropped
+// with probability `dropped`.
+std::string why_not_smoothed(double sigma, double wanted, double dropped);
 
 // Replaces measured depths by those of planes through the pixels around them. A plane of the world
 // is linear in the inverse of depth. It is fitted by least squares (Gauss-Newton, in depth) to a

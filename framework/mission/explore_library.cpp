@@ -8,6 +8,7 @@
 #include "framework/core/number_text.h"
 #include "framework/core/units.h"
 #include "framework/explore/episode_replay.h"
+#include "framework/geometry/depth_smoothing.h"
 #include "framework/map/map_file.h"
 #include "framework/mission/exploration.h"
 #include "framework/mission/guard.h"
@@ -84,9 +85,11 @@ EpisodeSettings settings_of(const Parameters& given, const MissionRun& run) {
   if (noise.number("dropped") > 0 || noise.number("sigma") > 0)
     s.sensor.noise = DepthNoise{noise.number("dropped"), noise.number("sigma")};
   s.sensor.smooth_to = noise.number("smooth_to");
-  if (s.sensor.smooth_to > 0 && noise.number("sigma") == 0)
-    throw InputError(noise.origin("smooth_to"),
-                     "smooth_to: there is no noise to smooth; expected sigma above 0 with it");
+  if (s.sensor.smooth_to > 0)
+    if (const std::string why =
+            why_not_smoothed(noise.number("sigma"), s.sensor.smooth_to, noise.number("dropped"));
+        !why.empty())
+      throw InputError(noise.origin("smooth_to"), "smooth_to: " + why);
   if (given.has("stereo_baseline")) {
     s.sensor.stereo.emplace();
     s.sensor.stereo->baseline = given.number("stereo_baseline");

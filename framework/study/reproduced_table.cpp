@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "framework/study/reproduced_table.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -71,13 +72,34 @@ RecordSource source_of(const Reproduction& made, const ReproducedRow& row,
   return {study, column.records};
 }
 
-using RecordFigures = std::vector<std::pair<double, const Value*>>;  // and their records
+// Of records of `evaluate scan`: what is said of such a tour is no figure of its method.
+bool is_left_out(const Value& record) {
+  for (const char* key : {"found", "counts"})
+    if (const Value* said = record.find(key); said && *said == Value(false)) return true;
+  return false;
+}
+
+struct RecordFigures {
+  std::vector<std::pair<double, const Value*>> used;  // and their records
+  std::size_t left_out = 0;
+};
 
 ReproducedCell cell_of(const RecordFigures& figures) {
-  if (figures.empty()) return {kNoFigure, kNoFigure, 0, Value()};
+  ReproducedCell cell{kNoFigure, kNoFigure, 0, figures.left_out, Value()};
+  if (figures.used.empty()) return cell;
   StratifiedSample sample;
-  for (const auto& [figure, record] : figures) sample.add(figure);
-  return {sample.mean(), sample.interval(), sample.count(), Value()};
+  for (const auto& [figure, record] : figures.used) sample.add(figure);
+  cell.mean = sample.mean();
+  cell.interval = sample.interval();
+  cell.count = sample.count();
+  return cell;
+}
+
+template <class Entry>
+std::size_t place_of(const std::vector<Entry>& entries, const std::string& name) {
+  for (std::size_t k = 0; k < entries.size(); ++k)
+    if (entries[k].name == name) return k;
+  throw Error("no entry '" + name + "'");
 }
 
 class Assembly {
@@ -96,30 +118,51 @@ class Assembly {
       }
   }
 
+  // A row or a column that no record fits is one, too.
+  void require_records() const {
+    for (const ReproducedRow& row : made_.rows) {
+      if (std::any_of(made_.columns.begin(), made_.columns.end(),
+                      [&](const ReproducedColumn& column) { return has_record(row, column); }))
+        continue;
+      refuse("row '" + row.name + "'", source_of(made_, row, made_.columns.front()), row.where);
+    }
+    for (const ReproducedColumn& column : made_.columns) {
+      if (std::any_of(made_.rows.begin(), made_.rows.end(),
+                      [&](const ReproducedRow& row) { return has_record(row, column); }))
+        continue;
+      refuse("column '" + column.name + "'", source_of(made_, made_.rows.front(), column),
+             column.where);
+    }
+  }
+
   // The figure of every record of a cell, and the record.
   RecordFigures figures(const ReproducedRow& row, const ReproducedColumn& column) const {
     RecordFigures all;
     const std::string place = join_places(column.figure, row.figure);
     for (const Value& record : records_.at(source_of(made_, row, column))) {
       if (!fits(record, row.where) || !fits(record, column.where)) continue;
+      if (is_left_out(record)) {
+        ++all.left_out;
+        continue;
+      }
       const Value* figure = at_place(record, place);
       if (!figure || figure->is_null()) continue;
       if (!figure->is_number())
         throw InputError("table " + made_.name + ", row '" + row.name + "', column '" +
                          column.name + "': '" + place + "' is " + figure->describe_type() +
                          ", not a number");
-      all.emplace_back(column.scale * figure->as_number(), &record);
+      all.used.emplace_back(column.scale * figure->as_number(), &record);
     }
     return all;
   }
 
   ReproducedCell cell(const ReproducedRow& row, std::size_t column) const {
     const ReproducedColumn& of = made_.columns[column];
-    const auto found = figures(row, of);
+    const RecordFigures found = figures(row, of);
     ReproducedCell cell = cell_of(found);
     cell.thesis = row.thesis[column];
-    if (found.size() != 1 || of.interval.empty()) return cell;
-    const Value* interval = at_place(*found.front().second, of.interval);
+    if (found.used.size() != 1 || of.interval.empty()) return cell;
+    const Value* interval = at_place(*found.used.front().second, of.interval);
     if (interval && interval->is_number()) cell.interval = of.scale * interval->as_number();
     return cell;
   }
@@ -128,15 +171,47 @@ class Assembly {
   ReproducedCell below(const ReproducedRow& row, const ReproducedRow& to,
                        const ReproducedColumn& column, const std::string& by) const {
     RecordFigures differences;
-    for (const auto& [figure, record] : figures(row, column))
-      for (const auto& [other, beside] : figures(to, column)) {
+    const RecordFigures ours = figures(row, column), others = figures(to, column);
+    for (const auto& [figure, record] : ours.used)
+      for (const auto& [other, beside] : others.used) {
         const Value *a = at_place(*record, by), *b = at_place(*beside, by);
-        if (a && b && *a == *b) differences.emplace_back(other - figure, record);
+        if (a && b && *a == *b) differences.used.emplace_back(other - figure, record);
       }
     return cell_of(differences);
   }
 
+  RankFound rank(const ReproducedRank& asked) const;
+
  private:
+  bool has_record(const ReproducedRow& row, const ReproducedColumn& column) const {
+    const Value::List& all = records_.at(source_of(made_, row, column));
+    return std::any_of(all.begin(), all.end(), [&](const Value& record) {
+      return fits(record, row.where) && fits(record, column.where);
+    });
+  }
+
+  // Names the first entry of `where` that no record has, and what they have instead.
+  [[noreturn]] void refuse(const std::string& what, const RecordSource& source,
+                           const Value& where) const {
+    std::string reason;
+    for (const auto& [place, wanted] : where.as_map()) {
+      std::set<std::string> there;
+      bool found = false;
+      for (const Value& record : records_.at(source))
+        if (const Value* value = at_place(record, place)) {
+          there.insert(to_json(*value, -1));
+          found = found || fits(record, Value(Value::Map{{place, wanted}}));
+        }
+      if (found) continue;
+      reason = " with " + place + " " + to_json(wanted, -1) + "; there are";
+      for (const std::string& value : there)
+        reason += (value == *there.begin() ? " " : ", ") + value;
+      break;
+    }
+    throw InputError("table " + made_.name + ", " + what + ": study '" + source.first +
+                     "' has no record" + (reason.empty() ? " of it" : reason));
+  }
+
   void require(const RecordSource& source, const std::string& place) const {
     const Value::List& all = records_.at(source);
     for (const Value& record : all)
@@ -153,11 +228,18 @@ class Assembly {
   const std::map<RecordSource, Value::List>& records_;
 };
 
-template <class Entry>
-std::size_t place_of(const std::vector<Entry>& entries, const std::string& name) {
-  for (std::size_t k = 0; k < entries.size(); ++k)
-    if (entries[k].name == name) return k;
-  throw Error("no entry '" + name + "'");
+RankFound Assembly::rank(const ReproducedRank& asked) const {
+  const std::size_t column = place_of(made_.columns, asked.column);
+  const ReproducedRow& above = made_.rows[place_of(made_.rows, asked.above)];
+  const ReproducedRow& below_it = made_.rows[place_of(made_.rows, asked.below)];
+  const ReproducedCell more = cell(above, column), less = cell(below_it, column);
+  RankFound found{asked, more.mean, less.mean, std::hypot(more.interval, less.interval)};
+  const ReproducedColumn& of = made_.columns[column];
+  if (!made_.paired || source_of(made_, above, of) != source_of(made_, below_it, of)) return found;
+  const ReproducedCell pairs = below(below_it, above, of, made_.paired->by);
+  if (pairs.count > 1 && pairs.count == more.count && pairs.count == less.count)
+    found.interval = pairs.interval;
+  return found;
 }
 
 std::string fixed(double number, int digits) {
@@ -170,12 +252,22 @@ std::string fixed(double number, int digits) {
 std::string shown(const ReproducedCell& cell, int digits) {
   std::string text = fixed(cell.mean, digits);
   if (std::isfinite(cell.interval)) text += " +- " + fixed(cell.interval, digits);
+  if (cell.left_out > 0)
+    text += " (" + std::to_string(cell.count) + " of " +
+            std::to_string(cell.count + cell.left_out) + ")";
   return text;
 }
 
 std::string said_text(const Value& thesis, int digits) {
   if (thesis.is_null()) return "-";
   return thesis.is_text() ? thesis.as_text() : fixed(thesis.as_number(), digits);
+}
+
+bool has_left_out(const ReproducedTable& table) {
+  for (const auto& row : table.cells)
+    for (const ReproducedCell& cell : row)
+      if (cell.left_out > 0) return true;
+  return false;
 }
 
 bool any_thesis(const ReproducedTable& table, std::size_t column) {
@@ -205,6 +297,7 @@ Value to_value(const ReproducedCell& cell) {
   value.set("ours", finite_value(cell.mean));
   value.set("interval", finite_value(cell.interval));
   value.set("count", static_cast<std::int64_t>(cell.count));
+  value.set("left_out", static_cast<std::int64_t>(cell.left_out));
   value.set("thesis", cell.thesis);
   return value;
 }
@@ -216,7 +309,10 @@ std::string rank_sentence(const RankFound& found) {
   if (!std::isfinite(found.above) || !std::isfinite(found.below))
     return text + "One of them has no figure";
   text += found.holds() ? "Yes" : "NO";
-  if (!found.clear()) text += ", within the intervals";
+  if (!std::isfinite(found.interval))
+    text += ", intervals unknown";
+  else if (!found.clear())
+    text += ", within the intervals";
   return text + ": " + fixed(found.above, 3) + " and " + fixed(found.below, 3);
 }
 
@@ -280,15 +376,12 @@ ReproducedTable reproduced_table(const Reproduction& made,
     if (source_of(made, row, column) == source_of(made, to, column))
       table.below.back() = assembly.below(row, to, column, made.paired->by);
   }
-  for (const ReproducedRank& rank : made.ranks) {
-    const std::size_t column = place_of(made.columns, rank.column);
-    const ReproducedCell& above = table.cells[place_of(made.rows, rank.above)][column];
-    const ReproducedCell& below = table.cells[place_of(made.rows, rank.below)][column];
-    const auto known = [](double interval) { return std::isfinite(interval) ? interval : 0; };
-    table.ranks.push_back(
-        {rank, above.mean, below.mean, std::hypot(known(above.interval), known(below.interval))});
-  }
+  for (const ReproducedRank& rank : made.ranks) table.ranks.push_back(assembly.rank(rank));
   return table;
+}
+
+void require_records(const Reproduction& made, const std::map<RecordSource, Value::List>& records) {
+  Assembly(made, records).require_records();
 }
 
 Section chosen_pictures(const ReproducedPictures& asked, const std::vector<Section>& sections) {
@@ -348,6 +441,11 @@ std::vector<std::vector<std::string>> table_cells(const ReproducedTable& table) 
 
 std::string table_notes(const ReproducedTable& table) {
   std::string text = table.caption + "\n";
+  if (has_left_out(table))
+    text +=
+        "In brackets: how many of the tours count. A tour that was not found has no figure, nor "
+        "has one of an integer program that the greedy method beats by the program's own "
+        "rewards.\n";
   for (const std::string& sentence : table.warnings) text += "! " + sentence + "\n";
   for (const RankFound& rank : table.ranks) text += "* " + rank_sentence(rank) + ".\n";
   if (!table.made.differs.empty()) text += "Why the figures differ from the thesis's:\n";
@@ -356,12 +454,12 @@ std::string table_notes(const ReproducedTable& table) {
 }
 
 std::string table_csv(const ReproducedTable& table) {
-  std::string out = "row,column,unit,ours,interval,count,thesis\n";
+  std::string out = "row,column,unit,ours,interval,count,left_out,thesis\n";
   const auto line = [&](const std::string& row, const std::string& column, const std::string& unit,
                         const ReproducedCell& cell) {
     out += csv_text(row) + "," + csv_text(column) + "," + csv_text(unit) + "," +
            csv_number(cell.mean) + "," + csv_number(cell.interval) + "," +
-           std::to_string(cell.count) + "," +
+           std::to_string(cell.count) + "," + std::to_string(cell.left_out) + "," +
            csv_text(cell.thesis.is_null() ? "" : said_text(cell.thesis, 6)) + "\n";
   };
   for (std::size_t r = 0; r < table.cells.size(); ++r) {
@@ -399,7 +497,7 @@ Value to_value(const ReproducedTable& table) {
     rank.set("claim", found.rank.of_thesis ? "thesis" : "lapwing");
     const bool known = std::isfinite(found.above) && std::isfinite(found.below);
     rank.set("holds", known ? Value(found.holds()) : Value());
-    rank.set("clear", known ? Value(found.clear()) : Value());
+    rank.set("clear", known && std::isfinite(found.interval) ? Value(found.clear()) : Value());
     ranks.push_back(std::move(rank));
   }
   return value;

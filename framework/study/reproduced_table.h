@@ -17,16 +17,18 @@ struct ReproducedCell {
   double mean = 0;      // not a number: no record has it
   double interval = 0;  // half the width of the 95 % interval; not a number below two records
   std::size_t count = 0;
+  std::size_t left_out = 0;  // records of tours that were not found, or that do not count
   Value thesis;
 };
 
 struct RankFound {
   ReproducedRank rank;
   double above = 0, below = 0;  // our means
-  double interval = 0;          // of their difference, if they do not depend on each other
+  // Half the width of the 95 % interval of their difference: by pairs if the table has pairs of
+  // both, else as if they did not depend on each other. Not a number: unknown, of single records.
+  double interval = 0;
   bool holds() const { return above > below; }
-  // The difference is larger than its interval, where there is one.
-  bool clear() const { return !(std::abs(above - below) <= interval); }
+  bool clear() const { return std::abs(above - below) > interval; }
 };
 
 struct ReproducedTable {
@@ -44,11 +46,16 @@ using RecordSource = std::pair<std::string, std::string>;
 std::vector<RecordSource> record_sources(const Reproduction& made);
 
 // `records`: of all sources. A cell is the mean of the figure over the records of its study that
-// have what its row and its column ask for. InputError for a figure that is not a number, and for
-// places that no record of the study has.
+// have what its row and its column ask for, without tours that were not found and those that do not
+// count (study/scan_row.h). InputError for a figure that is not a number, and for places that no
+// record of the study has.
 ReproducedTable reproduced_table(const Reproduction& made,
                                  const std::map<RecordSource, Value::List>& records,
                                  std::string caption);
+
+// InputError for a row or a column that no record fits: its `where` has a mistake. A quick version
+// may leave out what a row asks for.
+void require_records(const Reproduction& made, const std::map<RecordSource, Value::List>& records);
 
 // The blocks that are asked for, of the sections of a run's report. InputError naming what is not
 // there, and what is.

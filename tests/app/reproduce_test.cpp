@@ -98,6 +98,14 @@ TEST_F(Reproduce, GoesOnWithWhatIsThereAndOnlyWithTheSame) {
   const Finished other = reproduce({"9.1", "--data", "data", "--resume"});
   EXPECT_EQ(other.status, 2);
   EXPECT_NE(other.err.find("of another version (program is"), std::string::npos) << other.err;
+  // The same number, but another build.
+  std::string built = stated;
+  const std::size_t sum = built.find('"', built.find("\"executable\":") + 13) + 1;
+  built.replace(sum, 4, "0000");
+  write_file_atomically(folder / "reproduction.json", built);
+  const Finished rebuilt = reproduce({"9.1", "--data", "data", "--resume"});
+  EXPECT_NE(rebuilt.err.find("of another version (executable is"), std::string::npos)
+      << rebuilt.err;
   write_file_atomically(folder / "reproduction.json", stated);
   // Words may change, what the studies are told may not, nor what they read.
   write_table(std::string(kTable) + "\n# changed\n");
@@ -206,6 +214,16 @@ TEST_F(Reproduce, AMistakeInOneTableLeavesTheOthers) {
   EXPECT_EQ(figure.status, 2);
   EXPECT_NE(figure.err.find("no record of study 'nodes' has 'skore'"), std::string::npos)
       << figure.err;
+  // A method that none of them used.
+  text = kTable;
+  text.replace(text.find("{solver: greedy}, thesis"), 16, "{solver: gredy}");
+  write_table(text);
+  const Finished row = reproduce({"9.1", "--data", "data", "-o", "third", "--resume"});
+  EXPECT_EQ(row.status, 2);
+  EXPECT_NE(row.err.find("row 'Greedy': study 'nodes' has no record with solver \"gredy\"; there "
+                         "are \"greedy\", \"local_search\""),
+            std::string::npos)
+      << row.err;
   write_table(kTable);
   EXPECT_EQ(reproduce({"9.1", "--data", "data", "-o", "third", "--resume"}).status, 0)
       << "what was done is not lost";

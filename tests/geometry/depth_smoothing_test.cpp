@@ -72,6 +72,16 @@ TEST(DepthSmoothing, WindowsAreAsLargeAsTheNoiseAsks) {
   EXPECT_EQ(smoothing_reach(1, 0.2, 0), 0);
 }
 
+TEST(DepthSmoothing, SaysWhyItCannotBe) {
+  EXPECT_EQ(why_not_smoothed(1, 0.2, 0.4), "");
+  EXPECT_EQ(why_not_smoothed(1, 0.091, 0), "") << "1 / 11";
+  EXPECT_EQ(why_not_smoothed(1, 0.09, 0),
+            "the largest window, 11 x 11 pixels, reaches 0.0909 m; expected at least that");
+  EXPECT_NE(why_not_smoothed(1, 0.1, 0.4), "") << "0.117 m, where 40 % are dropped";
+  EXPECT_NE(why_not_smoothed(0.2, 0.2, 0), "");
+  EXPECT_NE(why_not_smoothed(0, 0.2, 0), "");
+}
+
 TEST(DepthSmoothing, AWallAndASlopingPlaneAreFreeOfNoiseAndOfBias) {
   const DepthImage wall = image_of([](int, int) { return 12; });
   const DepthImage slope = image_of([](int x, int y) { return 10 + 0.08 * x + 0.05 * y; });

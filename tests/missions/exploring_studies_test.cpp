@@ -148,6 +148,8 @@ TEST_F(Exploring, AnEvaluationGoesOnWhereItWasStopped) {
         "--dropped nan", "--smooth-to -1", "--smooth-to nan", "--stereo nan", "--stereo -1"})
     refused(noise, folder_ / "noise", "expected a number from 0 to");
   refused("--smooth-to 0.2 --dropped 0.4", folder_ / "noise", "no noise to smooth");
+  refused("--smooth-to 0.5 --sigma 0.1", folder_ / "noise", "there is nothing to smooth");
+  refused("--smooth-to 0.1 --sigma 1 --dropped 0.4", folder_ / "noise", "reaches 0.117 m");
   EXPECT_EQ(evaluate("--moves clear=0.5", folder_ / "small"), 2);  // the body does not fit
   EXPECT_EQ(evaluate("--moves leap=3", folder_ / "unknown"), 2);
 }

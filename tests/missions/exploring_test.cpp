@@ -141,6 +141,12 @@ TEST_F(Exploring, NoiseIsSmoothedWhereThatIsAskedFor) {
             std::string::npos);
   EXPECT_NE(refusal(few("--set camera.sigma=1 --set camera.smooth_to=-1")).find("smooth_to"),
             std::string::npos);
+  EXPECT_NE(refusal(few("--set camera.sigma=0.1 --set camera.smooth_to=0.5"))
+                .find("there is nothing to smooth; expected less than sigma, which is 0.1 m"),
+            std::string::npos);
+  EXPECT_NE(refusal(few("--set camera.sigma=1 --set camera.smooth_to=0.001"))
+                .find("11 x 11 pixels, reaches 0.09"),
+            std::string::npos);
 }
 
 // What noise puts into the map is no surface that was found.

@@ -137,8 +137,60 @@ TEST_F(Reproductions, CellsAreMeansBesideTheThesis) {
                 "F: 'A' above 'B', as in the thesis? Yes, within the intervals: 60.000"),
             std::string::npos)
       << table_notes(table);
+  EXPECT_EQ(table.ranks[0].interval, table.below[1]->interval) << "by pairs";
   EXPECT_NE(table_csv(table).find("\nA,F,%,60,"), std::string::npos) << table_csv(table);
   EXPECT_EQ(to_value(table).at("rows").as_list().size(), 2u);
+}
+
+TEST_F(Reproductions, ToursThatWereNotFoundOrDoNotCountHaveNoFigure) {
+  const Reproduction made = read_reproduction(folder_, "9.1");
+  const Value::List rows =
+      from_json(R"([{"method": "a", "seed": 1, "found": true, "with_first": {"f": 0.5}},
+                    {"method": "a", "seed": 2, "found": true, "with_first": {"f": 0.7}},
+                    {"method": "b", "seed": 1, "found": false, "with_first": {"f": 0}},
+                    {"method": "b", "seed": 2, "counts": false, "with_first": {"f": 0.2}}])",
+                "rows")
+          .as_list();
+  const Value::List times = from_json(R"([{"method": "a", "seconds": 7}])", "times").as_list();
+  const ReproducedTable table =
+      reproduced_table(made, {{{"hut", ""}, rows}, {{"hut", "times"}, times}}, "caption");
+  EXPECT_TRUE(std::isnan(table.cells[1][0].mean)) << "not the mean of 0 and 20";
+  EXPECT_EQ(table.cells[1][0].left_out, 2u);
+  EXPECT_EQ(table.below[1]->count, 0u);
+  EXPECT_EQ(table_cells(table)[2][1], "- (0 of 2)");
+  EXPECT_EQ(table_cells(table)[1][1].find(" of "), std::string::npos);
+  const std::string notes = table_notes(table);
+  EXPECT_NE(notes.find("One of them has no figure"), std::string::npos) << notes;
+  EXPECT_NE(notes.find("In brackets: how many of the tours count."), std::string::npos) << notes;
+  EXPECT_NE(table_csv(table).find("\nB,F,%,,,0,2,40"), std::string::npos) << table_csv(table);
+}
+
+TEST_F(Reproductions, ARowOrAColumnThatNoRecordFitsIsAMistake) {
+  const auto refused = [&](const std::string& part, const std::string& by) -> std::string {
+    std::string text = kTable;
+    text.replace(text.find(part), part.size(), by);
+    write("9.2", text);
+    const Value::List rows = from_json(R"([{"method": "a", "seed": 1, "with_first": {"f": 0.5}},
+                      {"method": "b", "seed": 1, "with_first": {"f": 0.4}}])",
+                                       "rows")
+                                 .as_list();
+    const Value::List times = from_json(R"([{"method": "a", "seconds": 3}])", "times").as_list();
+    try {
+      require_records(read_reproduction(folder_, "9.2"),
+                      {{{"hut", ""}, rows}, {{"hut", "times"}, times}});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refused("title", "title"), "") << "B has no time, but F";
+  EXPECT_EQ(refused("where: {method: b}", "where: {method: c}"),
+            "table 9.2, row 'B': study 'hut' has no record with method \"c\"; there are \"a\", "
+            "\"b\"");
+  EXPECT_EQ(refused("scale: 100", "where: {seed: 3}"),
+            "table 9.2, column 'F': study 'hut' has no record with seed 3; there are 1");
+  EXPECT_EQ(refused("where: {method: b}", "where: {method: b, seed: 2}"),
+            "table 9.2, row 'B': study 'hut' has no record with seed 2; there are 1");
 }
 
 TEST_F(Reproductions, MeansBringTheirOwnIntervals) {
@@ -272,6 +324,7 @@ TEST_F(Reproductions, ARankSaysWhetherIntervalsAllowIt) {
   EXPECT_EQ(sentence(3, 1, 5), asked + "Yes, within the intervals: 3.000 and 1.000.\n");
   EXPECT_EQ(sentence(1, 3, 5), asked + "NO, within the intervals: 1.000 and 3.000.\n");
   EXPECT_EQ(sentence(1, 3, 0), asked + "NO: 1.000 and 3.000.\n");
+  EXPECT_EQ(sentence(3, 1, std::nan("")), asked + "Yes, intervals unknown: 3.000 and 1.000.\n");
   EXPECT_EQ(sentence(std::nan(""), 3, 0), asked + "One of them has no figure.\n");
 }
 

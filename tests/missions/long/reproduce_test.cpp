@@ -147,7 +147,7 @@ TEST_F(Reproduced, ExplorationItsTimesAndCurves) {
        {"W2 (downtown)", "W1 (district)", "P (courtyard)", "S (towers)", "N (suburb)"}) {
     EXPECT_NEAR(found.at({"Oracle", world}), 1, 1e-9) << world;
     for (const char* utility :
-         {"Frontier", "AverageEntropy", "ProximityCount", "Ours (the network of the thesis)",
+         {"Frontier", "AverageEntropy", "ProximityCount", "Ours (grid network)",
           "Default of Lapwing (a network that reads rays)"}) {
       EXPECT_GT(found.at({utility, world}), 0) << utility << " " << world;
       EXPECT_LT(found.at({utility, world}), 1.2) << utility << " " << world;
@@ -222,8 +222,7 @@ TEST_F(Reproduced, RealMeshes) {
   if (!std::getenv("LAPWING_DATA")) GTEST_SKIP() << "needs recorded data: LAPWING_DATA";
   const auto found = cells(table("5.5"));
   EXPECT_NEAR(found.at({"Oracle", "outdoor"}), 1, 1e-9);
-  for (const char* row :
-       {"Ours (the network of the thesis)", "Default of Lapwing (a network that reads rays)"})
+  for (const char* row : {"Ours (grid network)", "Default of Lapwing (a network that reads rays)"})
     for (const char* column : {"outdoor", "indoor"}) EXPECT_GT(found.at({row, column}), 0) << row;
 }
 
