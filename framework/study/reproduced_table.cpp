@@ -122,13 +122,16 @@ class Assembly {
   void require_records() const {
     for (const ReproducedRow& row : made_.rows) {
       if (std::any_of(made_.columns.begin(), made_.columns.end(),
-                      [&](const ReproducedColumn& column) { return has_record(row, column); }))
+                      [&](const ReproducedColumn& column) {
+                        return has_record(source_of(made_, row, column), {&row.where});
+                      }))
         continue;
       refuse("row '" + row.name + "'", source_of(made_, row, made_.columns.front()), row.where);
     }
     for (const ReproducedColumn& column : made_.columns) {
-      if (std::any_of(made_.rows.begin(), made_.rows.end(),
-                      [&](const ReproducedRow& row) { return has_record(row, column); }))
+      if (std::any_of(made_.rows.begin(), made_.rows.end(), [&](const ReproducedRow& row) {
+            return has_record(source_of(made_, row, column), {&row.where, &column.where});
+          }))
         continue;
       refuse("column '" + column.name + "'", source_of(made_, made_.rows.front(), column),
              column.where);
@@ -183,10 +186,12 @@ class Assembly {
   RankFound rank(const ReproducedRank& asked) const;
 
  private:
-  bool has_record(const ReproducedRow& row, const ReproducedColumn& column) const {
-    const Value::List& all = records_.at(source_of(made_, row, column));
+  // That fits all of `wheres`.
+  bool has_record(const RecordSource& source, std::initializer_list<const Value*> wheres) const {
+    const Value::List& all = records_.at(source);
     return std::any_of(all.begin(), all.end(), [&](const Value& record) {
-      return fits(record, row.where) && fits(record, column.where);
+      return std::all_of(wheres.begin(), wheres.end(),
+                         [&](const Value* where) { return fits(record, *where); });
     });
   }
 

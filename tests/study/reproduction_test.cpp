@@ -90,7 +90,7 @@ TEST_F(Reproductions, RowsArePairedWithinAStudy) {
   put(", records: times", "");
   write("9.2", text);
   const Reproduction made = read_reproduction(folder_, "9.2");
-  const auto rows = [](const char* text) { return from_json(text, "rows").as_list(); };
+  const auto rows = [](const char* json) { return from_json(json, "rows").as_list(); };
   const ReproducedTable table = reproduced_table(
       made,
       {{{"hut", ""},

@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <numeric>
+#include <regex>
+#include <set>
 
 #include "framework/core/error.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
 #include "framework/map/plain_map.h"
+#include "framework/study/training_recipe.h"
 #include "plugins/utilities/learned/model_file.h"
 #include "tests/plugins/utilities/fit_fixture.h"
 
@@ -260,20 +263,57 @@ TEST(LearnedRays, ABuildWithoutLibtorchSaysWhichHasIt) {
 
 // Of four rounds of its recipe, each begun with the model of the one before; no world that is
 // validated or judged by is among those that it was trained in.
+const fs::path kShipped = fs::path(LAPWING_SOURCE_DIR) / "plugins/utilities/learned";
+
+void add_worlds(const Value& provenance, std::set<std::string>& worlds) {
+  for (const Value& world : provenance.at("worlds").as_list()) worlds.insert(world.as_text());
+  if (const Value* begin = provenance.find("begin")) add_worlds(*begin, worlds);
+}
+
+// Rows such as "| street 1 | `learned` | ..." of the file of experiments.
+TEST(LearnedRays, NoWorldOfTheFiguresWasSeenInTraining) {
+  const std::string text = read_file(kShipped / "EXPERIMENTS.md");
+  const std::regex row("\\n\\| ([a-z]+ [0-9]+) \\| `(learned|learned_grid)` \\|");
+  std::set<std::string> figures;
+  for (std::sregex_iterator at(text.begin(), text.end(), row), end; at != end; ++at)
+    figures.insert((*at)[1]);
+  EXPECT_EQ(figures.size(), 10u);
+  for (const char* file : {"learned.model", "learned_grid.model"}) {
+    std::set<std::string> trained;
+    add_worlds(read_model(kShipped / file).provenance, trained);
+    EXPECT_GT(trained.size(), 20u) << file;
+    for (const std::string& world : figures) EXPECT_FALSE(trained.contains(world)) << world;
+    // Of the tables of the thesis.
+    for (const char* world : {"downtown 801", "district 801", "courtyard 801", "towers 801",
+                              "suburb 801", "district 201"})
+      EXPECT_FALSE(trained.contains(world)) << world << " " << file;
+  }
+}
+
 TEST(LearnedRays, TheShippedModelIsThatOfItsRecipe) {
-  const fs::path folder = fs::path(LAPWING_SOURCE_DIR) / "plugins/utilities/learned";
+  const fs::path folder = kShipped;
   const Model model = read_model(folder / "learned.model");
   EXPECT_TRUE(model.ray_network(folder / "learned.model") == RayNetworkShape{});
   EXPECT_EQ(model.mapping.at("resolution").as_number(), 0.4);
   EXPECT_LT(fs::file_size(folder / "learned.model"), 4u << 20);
   const std::string log = read_file(folder / "learned.model.log");
+  // `lapwing train all --hours 1`: each round is trained with its worlds and those before it.
+  const TrainingRecipe recipe =
+      read_recipe(fs::path(LAPWING_SOURCE_DIR) / "configs/train/learned.yaml").within(1);
+  ASSERT_EQ(recipe.rounds.size(), 4u);
   const Value* from = &model.provenance;
-  for (int round = 4; round >= 1; --round) {
+  for (std::size_t round = 4; round >= 1; --round) {
     ASSERT_NE(from, nullptr) << round;
     const std::string rho = to_json(from->at("validation_rho"), -1);
     EXPECT_NE(log.find("\"validation_rho\":" + rho), std::string::npos) << rho;
-    for (const Value& world : from->at("worlds").as_list())
-      EXPECT_EQ(world.as_text().find(" 9"), std::string::npos) << world.as_text();
+    std::set<std::string> said, trained;
+    for (std::size_t k = 0; k < round; ++k)
+      for (const RecipeSamples& samples : recipe.rounds[k].samples)
+        for (const std::string& scene : samples.scenes)
+          for (std::int64_t seed = samples.first; seed <= samples.last; ++seed)
+            said.insert(scene + " " + std::to_string(seed));
+    for (const Value& world : from->at("worlds").as_list()) trained.insert(world.as_text());
+    EXPECT_EQ(trained, said) << round;
     from = from->find("begin");
   }
   EXPECT_EQ(from, nullptr);
