@@ -183,7 +183,20 @@ class Assembly {
     return cell_of(differences);
   }
 
-  RankFound rank(const ReproducedRank& asked) const;
+  RankFound rank(const ReproducedRank& asked) const {
+    const std::size_t column = place_of(made_.columns, asked.column);
+    const ReproducedRow& above = made_.rows[place_of(made_.rows, asked.above)];
+    const ReproducedRow& below_it = made_.rows[place_of(made_.rows, asked.below)];
+    const ReproducedCell more = cell(above, column), less = cell(below_it, column);
+    RankFound found{asked, more.mean, less.mean, std::hypot(more.interval, less.interval)};
+    const ReproducedColumn& of = made_.columns[column];
+    if (!made_.paired || source_of(made_, above, of) != source_of(made_, below_it, of))
+      return found;
+    const ReproducedCell pairs = below(below_it, above, of, made_.paired->by);
+    if (pairs.count > 1 && pairs.count == more.count && pairs.count == less.count)
+      found.interval = pairs.interval;
+    return found;
+  }
 
  private:
   // That fits all of `wheres`.
@@ -232,20 +245,6 @@ class Assembly {
   const Reproduction& made_;
   const std::map<RecordSource, Value::List>& records_;
 };
-
-RankFound Assembly::rank(const ReproducedRank& asked) const {
-  const std::size_t column = place_of(made_.columns, asked.column);
-  const ReproducedRow& above = made_.rows[place_of(made_.rows, asked.above)];
-  const ReproducedRow& below_it = made_.rows[place_of(made_.rows, asked.below)];
-  const ReproducedCell more = cell(above, column), less = cell(below_it, column);
-  RankFound found{asked, more.mean, less.mean, std::hypot(more.interval, less.interval)};
-  const ReproducedColumn& of = made_.columns[column];
-  if (!made_.paired || source_of(made_, above, of) != source_of(made_, below_it, of)) return found;
-  const ReproducedCell pairs = below(below_it, above, of, made_.paired->by);
-  if (pairs.count > 1 && pairs.count == more.count && pairs.count == less.count)
-    found.interval = pairs.interval;
-  return found;
-}
 
 std::string fixed(double number, int digits) {
   if (!std::isfinite(number)) return "-";

@@ -31,8 +31,8 @@ std::set<VoxelKey> voxels_of_poles(const VoxelGrid& grid) {
     for (double z = 0.45; z < kHeight; z += 0.1)
       for (const double across : {0.001, 0.5, 0.999})
         for (const double along : {0.001, 0.5, 0.999})
-          keys.insert(grid.key({10.1 + along * kWidth,
-                                1.5 * (k - kPoles / 2) + 0.15 + across * kWidth, z}));
+          keys.insert(grid.key(
+              {10.1 + along * kWidth, 1.5 * (k - kPoles / 2) + 0.15 + across * kWidth, z}));
   return keys;
 }
 
@@ -48,9 +48,8 @@ PoleVoxels mapped(std::optional<DepthNoise> noise, double smooth_to) {
   sensor.smooth_to = smooth_to;
   const auto map = YardWorld::new_map();
   for (int k = 0; k < kImages; ++k) {
-    const Viewpoint view{{1 + 5. * (k % 4) / 3, -9 + 18. * k / (kImages - 1), 2.5},
-                         0.1 * (k % 5 - 2),
-                         -0.1};
+    const Viewpoint view{
+        {1 + 5. * (k % 4) / 3, -9 + 18. * k / (kImages - 1), 2.5}, 0.1 * (k % 5 - 2), -0.1};
     PosedDepthImage image = sensor.measure(*scene, view, static_cast<std::uint64_t>(k), 1);
     sensor.smooth(image, 1);
     map->integrate(image);
