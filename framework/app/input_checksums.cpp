@@ -19,7 +19,7 @@ std::string checksum_of_folder(const fs::path& folder, const std::set<std::strin
        item != fs::recursive_directory_iterator(); ++item) {
     if (item->is_directory() && left_out.contains(item->path().filename().string()))
       item.disable_recursion_pending();
-    if (item->is_regular_file()) files.insert(item->path());
+    if (item->is_regular_file() && item->path().extension() != ".md") files.insert(item->path());
   }
   std::string all;
   for (const fs::path& file : files)

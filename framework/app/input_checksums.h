@@ -12,7 +12,8 @@
 
 namespace lapwing {
 
-// Of a folder's files and their names; `left_out` are names of folders in it.
+// Of a folder's files and their names, without documents (`.md`), which no result depends on;
+// `left_out` are names of folders in it.
 std::string checksum_of_folder(const std::filesystem::path& folder,
                                const std::set<std::string>& left_out = {});
 

@@ -116,6 +116,13 @@ TEST_F(Reproduce, GoesOnWithWhatIsThereAndOnlyWithTheSame) {
   EXPECT_NE(reproduce({"9.1", "--data", "data", "--resume"}).err.find("(studies is"),
             std::string::npos);
   write_table(kTable);
+  // No result depends on a document; on a configuration it may.
+  write_file_atomically(home_ / "configs/README.md", "words\n");
+  EXPECT_EQ(reproduce({"9.1", "--data", "data", "--resume"}).status, 0);
+  write_file_atomically(home_ / "configs/more.yaml", "seed: 2\n");
+  EXPECT_NE(reproduce({"9.1", "--data", "data", "--resume"}).err.find("(configs is"),
+            std::string::npos);
+  fs::remove(home_ / "configs/more.yaml");
   write_file_atomically(folder_ / "data/nodes.txt", std::string(kInstance) + "3 3 1\n");
   const Finished others = reproduce({"9.1", "--data", "data", "--resume"});
   EXPECT_NE(others.err.find("(files is"), std::string::npos) << others.err;
