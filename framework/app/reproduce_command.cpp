@@ -138,11 +138,16 @@ class Reproducing {
   ExitStatus run() {
     const FolderClaim claim(studies());
     claim_version();
-    for (std::size_t k = 0; k < made_.studies.size(); ++k)
-      if (!fs::exists(answer_of(made_.studies[k].name))) ask(made_.studies[k], words_[k]);
+    try {
+      for (std::size_t k = 0; k < made_.studies.size(); ++k)
+        if (!fs::exists(answer_of(made_.studies[k].name))) ask(made_.studies[k], words_[k]);
+    } catch (const InputError&) {
+      release_version();
+      throw;
+    }
     std::map<RecordSource, Value::List> records;
     for (const RecordSource& source : record_sources(made_)) records[source] = records_of(source);
-    if (!asked_.quick) require_records(made_, records);
+    require_records(made_, records, asked_.quick);
     ReproducedTable table = reproduced_table(made_, records, caption());
     for (const ReproducedPictures& asked : made_.pictures) table.pictures.push_back(drawn(asked));
     table.warnings = outcomes();
@@ -229,6 +234,13 @@ class Reproducing {
     }
   }
 
+  // A folder in which nothing was made is free for a corrected table: its claim takes it away.
+  void release_version() const {
+    const auto items = fs::directory_iterator(studies());
+    if (std::distance(fs::begin(items), fs::end(items)) == 1)
+      fs::remove(studies() / "reproduction.json");
+  }
+
   fs::path answer_of(const std::string& study) const { return studies() / (study + ".json"); }
 
   Value::List records_of(const RecordSource& source) const {
@@ -282,12 +294,14 @@ class Reproducing {
     Value object =
         has_json && !silent ? from_json(said.output, "study " + study.name) : Value::map();
     const Value* error = object.find("error");
-    if (said.status > 1 || error)
+    if (said.status > 1 || error) {
+      // Its reason is on standard error already; an object of --json has to hold it, too.
       throw InputError("study '" + study.name + "' of " + made_.thesis + ": " +
-                       (error && error->is_text()
+                       (invocation_.json && error && error->is_text()
                             ? error->as_text()
                             : "`lapwing " + study.command + "` ended with exit status " +
                                   std::to_string(said.status)));
+    }
     if (object.is_map()) object.set("wall_seconds", taken.count());
     write_file_atomically(answer_of(study.name), to_json(object) + "\n");
   }
@@ -364,14 +378,14 @@ class Reproducing {
 ExitStatus list_reproductions(const Invocation& invocation) {
   const fs::path folder = definitions();
   Value list = Value::list();
-  TextTable table{.rows = {{"name", "thesis", "title"}}};
+  TextTable table{.rows = {{"name", "title"}}};
   std::string errors;
   for (const std::string& name : reproduction_names(folder)) {
     Value entry = Value::map();
     entry.set("name", name);
     try {
       const Reproduction made = read_reproduction(folder, name);
-      table.rows.push_back({name, made.thesis, made.title});
+      table.rows.push_back({name, made.title});
       entry.set("thesis", made.thesis);
       entry.set("title", made.title);
     } catch (const InputError& error) {  // the others are listed all the same

@@ -84,6 +84,7 @@ class RecipeRun {
     const auto* trainable = static_cast<const Trainable*>(
         registry.extension(ViewUtility::kKind, recipe_.utility, kTrainable));
     if (!trainable) throw InputError("utility '" + recipe_.utility + "' is not a trained utility");
+    ExplorationSetup().set_mapping(request_.mapping);
     const auto require = [&](const RecipeSamples& line) {
       if (line.explorer != TrainingRecipe::kItself)
         registry.find(ViewUtility::kKind, line.explorer);

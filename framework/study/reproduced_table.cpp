@@ -119,8 +119,9 @@ class Assembly {
   }
 
   // A row or a column that no record fits is one, too.
-  void require_records() const {
+  void require_records(bool quick) const {
     for (const ReproducedRow& row : made_.rows) {
+      if (quick && !row.quick) continue;
       if (std::any_of(made_.columns.begin(), made_.columns.end(),
                       [&](const ReproducedColumn& column) {
                         return has_record(source_of(made_, row, column), {&row.where});
@@ -129,6 +130,7 @@ class Assembly {
       refuse("row '" + row.name + "'", source_of(made_, row, made_.columns.front()), row.where);
     }
     for (const ReproducedColumn& column : made_.columns) {
+      if (quick && !column.quick) continue;
       if (std::any_of(made_.rows.begin(), made_.rows.end(), [&](const ReproducedRow& row) {
             return has_record(source_of(made_, row, column), {&row.where, &column.where});
           }))
@@ -284,12 +286,12 @@ std::string title_of(const ReproducedColumn& column) {
   return column.name + (column.unit.empty() ? "" : ", " + column.unit);
 }
 
-std::string below_title(const ReproducedTable& table) {
-  return "below " + table.made.paired->to;
+std::string below_title(const ReproducedTable& table, const std::string& column) {
+  return column + " below " + table.made.paired->to;
 }
 
-int paired_digits(const ReproducedTable& table) {
-  return table.made.columns[place_of(table.made.columns, table.made.paired->column)].digits;
+int digits_of(const ReproducedTable& table, const std::string& column) {
+  return table.made.columns[place_of(table.made.columns, column)].digits;
 }
 
 Value finite_value(double number) {
@@ -318,6 +320,30 @@ std::string rank_sentence(const RankFound& found) {
   else if (!found.clear())
     text += ", within the intervals";
   return text + ": " + fixed(found.above, 3) + " and " + fixed(found.below, 3);
+}
+
+// How many of a column's whole order hold; the others are told one by one.
+std::string order_sentences(const ReproducedTable& table) {
+  std::string text;
+  for (const ReproducedColumn& column : table.made.columns) {
+    std::size_t all = 0, held = 0, open = 0, unknown = 0;
+    for (const RankFound& found : table.ranks) {
+      if (!found.rank.of_order || found.rank.column != column.name) continue;
+      ++all;
+      if (!found.holds()) continue;
+      ++held;
+      if (!std::isfinite(found.interval))
+        ++unknown;
+      else if (!found.clear())
+        ++open;
+    }
+    if (all == 0) continue;
+    text += "* " + column.name + ": of " + std::to_string(all) +
+            " orders of two rows in the thesis, " + std::to_string(held) + " hold here; " +
+            std::to_string(open) + " of them within the intervals" +
+            (unknown > 0 ? ", " + std::to_string(unknown) + " with unknown intervals" : "") + ".\n";
+  }
+  return text;
 }
 
 Chart chart_of(const ReproducedTable& table) {
@@ -372,20 +398,24 @@ ReproducedTable reproduced_table(const Reproduction& made,
   for (const ReproducedRow& row : made.rows) {
     auto& cells = table.cells.emplace_back();
     for (std::size_t c = 0; c < made.columns.size(); ++c) cells.push_back(assembly.cell(row, c));
-    table.below.emplace_back();
-    if (!made.paired || row.name == made.paired->to) continue;
+    auto& below = table.below.emplace_back();
+    if (!made.paired) continue;
     const ReproducedRow& to = made.rows[place_of(made.rows, made.paired->to)];
-    const ReproducedColumn& column = made.columns[place_of(made.columns, made.paired->column)];
-    // The conditions of another study differ, and so would more than the method.
-    if (source_of(made, row, column) == source_of(made, to, column))
-      table.below.back() = assembly.below(row, to, column, made.paired->by);
+    for (const std::string& name : made.paired->columns) {
+      const ReproducedColumn& column = made.columns[place_of(made.columns, name)];
+      below.emplace_back();
+      // The conditions of another study differ, and so would more than the method.
+      if (&row != &to && source_of(made, row, column) == source_of(made, to, column))
+        below.back() = assembly.below(row, to, column, made.paired->by);
+    }
   }
   for (const ReproducedRank& rank : made.ranks) table.ranks.push_back(assembly.rank(rank));
   return table;
 }
 
-void require_records(const Reproduction& made, const std::map<RecordSource, Value::List>& records) {
-  Assembly(made, records).require_records();
+void require_records(const Reproduction& made, const std::map<RecordSource, Value::List>& records,
+                     bool quick) {
+  Assembly(made, records).require_records(quick);
 }
 
 Section chosen_pictures(const ReproducedPictures& asked, const std::vector<Section>& sections) {
@@ -435,10 +465,14 @@ std::vector<std::vector<std::string>> table_cells(const ReproducedTable& table) 
       if (beside) rows[r + 1].push_back(said_text(cell.thesis, column.digits));
     }
   }
-  if (table.made.paired) {
-    rows[0].push_back(below_title(table));
-    for (std::size_t r = 0; r < table.cells.size(); ++r)
-      rows[r + 1].push_back(table.below[r] ? shown(*table.below[r], paired_digits(table)) : "");
+  if (!table.made.paired) return rows;
+  for (std::size_t c = 0; c < table.made.paired->columns.size(); ++c) {
+    const std::string& column = table.made.paired->columns[c];
+    rows[0].push_back(below_title(table, column));
+    for (std::size_t r = 0; r < table.cells.size(); ++r) {
+      const auto& below = table.below[r][c];
+      rows[r + 1].push_back(below ? shown(*below, digits_of(table, column)) : "");
+    }
   }
   return rows;
 }
@@ -451,7 +485,9 @@ std::string table_notes(const ReproducedTable& table) {
         "has one of an integer program that the greedy method beats by the program's own "
         "rewards.\n";
   for (const std::string& sentence : table.warnings) text += "! " + sentence + "\n";
-  for (const RankFound& rank : table.ranks) text += "* " + rank_sentence(rank) + ".\n";
+  text += order_sentences(table);
+  for (const RankFound& rank : table.ranks)
+    if (!rank.rank.of_order || !rank.holds()) text += "* " + rank_sentence(rank) + ".\n";
   if (!table.made.differs.empty()) text += "Why the figures differ from the thesis's:\n";
   for (const std::string& sentence : table.made.differs) text += "* " + sentence + "\n";
   return text;
@@ -470,7 +506,10 @@ std::string table_csv(const ReproducedTable& table) {
     for (std::size_t c = 0; c < table.cells[r].size(); ++c)
       line(table.made.rows[r].name, table.made.columns[c].name, table.made.columns[c].unit,
            table.cells[r][c]);
-    if (table.below[r]) line(table.made.rows[r].name, below_title(table), "", *table.below[r]);
+    for (std::size_t c = 0; c < table.below[r].size(); ++c)
+      if (const auto& below = table.below[r][c])
+        line(table.made.rows[r].name, below_title(table, table.made.paired->columns[c]), "",
+             *below);
   }
   return out;
 }
@@ -488,7 +527,10 @@ Value to_value(const ReproducedTable& table) {
     Value& cells = row.set("cells", Value::map());
     for (std::size_t c = 0; c < table.cells[r].size(); ++c)
       cells.set(table.made.columns[c].name, to_value(table.cells[r][c]));
-    if (table.below[r]) row.set("below", to_value(*table.below[r]));
+    Value below = Value::map();
+    for (std::size_t c = 0; c < table.below[r].size(); ++c)
+      if (table.below[r][c]) below.set(table.made.paired->columns[c], to_value(*table.below[r][c]));
+    if (!below.as_map().empty()) row.set("below", std::move(below));
     rows.push_back(std::move(row));
   }
   value.set("warnings", Value(Value::List(table.warnings.begin(), table.warnings.end())));

@@ -33,9 +33,10 @@ struct RankFound {
 
 struct ReproducedTable {
   Reproduction made;
-  std::string caption;                               // what was run, one paragraph
-  std::vector<std::vector<ReproducedCell>> cells;    // by row, by column
-  std::vector<std::optional<ReproducedCell>> below;  // by row, of `paired`: how far below that row
+  std::string caption;                             // what was run, one paragraph
+  std::vector<std::vector<ReproducedCell>> cells;  // by row, by column
+  // By row, by column of `paired`: how far below that row.
+  std::vector<std::vector<std::optional<ReproducedCell>>> below;
   std::vector<RankFound> ranks;
   std::vector<Section> pictures;      // of the report, one for each of `made.pictures`
   std::vector<std::string> warnings;  // sentences: what a reader of the figures must know
@@ -53,9 +54,10 @@ ReproducedTable reproduced_table(const Reproduction& made,
                                  const std::map<RecordSource, Value::List>& records,
                                  std::string caption);
 
-// InputError for a row or a column that no record fits: its `where` has a mistake. A quick version
-// may leave out what a row asks for.
-void require_records(const Reproduction& made, const std::map<RecordSource, Value::List>& records);
+// InputError for a row or a column that no record fits: its `where` has a mistake. The quick
+// version leaves out rows and columns that say so.
+void require_records(const Reproduction& made, const std::map<RecordSource, Value::List>& records,
+                     bool quick);
 
 // The blocks that are asked for, of the sections of a run's report. InputError naming what is not
 // there, and what is.

@@ -49,6 +49,10 @@ class KnownMap {
     const Value* found = value_.find(key);
     return found ? found->as_number() : otherwise;
   }
+  bool flag(const char* key, bool otherwise) const {
+    const Value* found = value_.find(key);
+    return found ? found->as_boolean() : otherwise;
+  }
   Value map(const char* key) const {
     const Value* found = value_.find(key);
     if (!found) return Value::map();
@@ -93,9 +97,9 @@ ReproducedStudy study_from(const std::string& name, const Value& value) {
 }
 
 ReproducedColumn column_from(const Value& value) {
-  const KnownMap given(
-      value, "a column",
-      {"name", "unit", "study", "figure", "interval", "records", "where", "scale", "digits"});
+  const KnownMap given(value, "a column",
+                       {"name", "unit", "study", "figure", "interval", "records", "where", "scale",
+                        "digits", "quick"});
   ReproducedColumn column;
   column.name = word_of(given.need("name"));
   column.unit = given.text("unit");
@@ -110,16 +114,18 @@ ReproducedColumn column_from(const Value& value) {
     throw InputError(value.origin(),
                      "column '" + column.name + "': digits is a whole number from 0 to 9");
   column.digits = static_cast<int>(digits);
+  column.quick = given.flag("quick", true);
   return column;
 }
 
 ReproducedRow row_from(const Value& value, std::size_t columns) {
-  const KnownMap given(value, "a row", {"name", "study", "figure", "where", "thesis"});
+  const KnownMap given(value, "a row", {"name", "study", "figure", "where", "thesis", "quick"});
   ReproducedRow row;
   row.name = word_of(given.need("name"));
   row.study = given.text("study");
   row.where = given.map("where");
   row.figure = given.text("figure");
+  row.quick = given.flag("quick", true);
   row.thesis = given.list("thesis");
   for (const Value& said : row.thesis)
     if (!said.is_null() && !said.is_number() && !said.is_text())
@@ -209,15 +215,40 @@ void require_claimed(const Reproduction& made, const ReproducedRank& rank, const
                                    "'; write `claim: lapwing` if it is ours");
 }
 
+// Every two rows whose figures differ in the thesis.
+void add_order(const std::string& name, const Origin& origin, Reproduction& made) {
+  const std::size_t column =
+      static_cast<std::size_t>(&named(made.columns, name, "column", origin) - made.columns.data());
+  std::vector<const ReproducedRow*> rows;
+  for (const ReproducedRow& row : made.rows)
+    if (row.thesis[column].is_number()) rows.push_back(&row);
+  const auto figure = [&](const ReproducedRow* row) { return row->thesis[column].as_number(); };
+  std::stable_sort(rows.begin(), rows.end(), [&](const ReproducedRow* a, const ReproducedRow* b) {
+    return figure(a) > figure(b);
+  });
+  if (rows.empty() || figure(rows.front()) == figure(rows.back()))
+    throw InputError(origin, "order: the thesis has no two different figures in '" + name + "'");
+  for (std::size_t a = 0; a < rows.size(); ++a)
+    for (std::size_t b = a + 1; b < rows.size(); ++b)
+      if (figure(rows[a]) > figure(rows[b]))
+        made.ranks.push_back({rows[a]->name, rows[b]->name, name, true, true});
+}
+
 void add_ranks(const Value& entry, Reproduction& made) {
-  const KnownMap given(entry, "a rank", {"above", "below", "column", "claim"});
+  if (entry.is_map() && entry.find("order")) {
+    const KnownMap given(entry, "an order", {"order"});
+    for (const Value& column : one_or_more(given.need("order")))
+      add_order(word_of(column), entry.origin(), made);
+    return;
+  }
+  const KnownMap given(entry, "a rank", {"above", "below", "column", "claim", "order"});
   const std::string claim = given.text("claim", "thesis");
   if (claim != "thesis" && claim != "lapwing")
     throw InputError(entry.origin(), "a rank's claim is thesis or lapwing, not '" + claim + "'");
   for (const Value& column : one_or_more(given.need("column")))
     for (const Value& below : one_or_more(given.need("below"))) {
-      made.ranks.push_back(
-          {given.need("above").as_text(), below.as_text(), word_of(column), claim == "thesis"});
+      made.ranks.push_back({given.need("above").as_text(), below.as_text(), word_of(column),
+                            claim == "thesis", false});
       require_claimed(made, made.ranks.back(), entry.origin());
     }
 }
@@ -232,10 +263,11 @@ void add_rest(const KnownMap& given, const Value& file, Reproduction& made) {
   for (const Value& entry : given.list("ranks")) add_ranks(entry, made);
   if (const Value* entry = given.find("paired")) {
     const KnownMap paired(*entry, "paired", {"to", "column", "by"});
-    made.paired = {paired.need("to").as_text(), word_of(paired.need("column")),
-                   paired.need("by").as_text()};
+    made.paired = {paired.need("to").as_text(), {}, paired.need("by").as_text()};
     named(made.rows, made.paired->to, "row", entry->origin());
-    named(made.columns, made.paired->column, "column", entry->origin());
+    for (const Value& column : one_or_more(paired.need("column")))
+      made.paired->columns.push_back(
+          named(made.columns, word_of(column), "column", entry->origin()).name);
   }
   if (const Value* entry = given.find("chart")) {
     const KnownMap chart(*entry, "chart", {"axis", "unit"});

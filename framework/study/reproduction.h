@@ -16,7 +16,9 @@
 //     - {name: NextBestView, where: {method: greedy}, thesis: [79.30]}
 //   pictures:
 //     - {title: The path, study: flight, section: Path, blocks: [Path from above]}
-//   ranks: [{above: NextBestView, below: [A, B], column: F}]  # what the thesis's figures say
+//   ranks:
+//     - {order: F}                                          # all that the thesis's figures say
+//     - {above: NextBestView, below: [A, B], column: time}  # that one is above others
 //   differs: [why figures cannot be compared, one sentence each]
 //
 // Pictures are blocks of the reports of studies whose command is `run`; a figure of pictures alone
@@ -54,6 +56,7 @@ struct ReproducedColumn {
   Value where = Value::map();  // what a record must have
   double scale = 1;
   int digits = 2;
+  bool quick = true;  // whether the quick version has records of it
 };
 
 struct ReproducedRow {
@@ -62,6 +65,7 @@ struct ReproducedRow {
   std::string figure;  // place below that of the column
   Value where = Value::map();
   std::vector<Value> thesis;  // one for each column: a number, a text such as "30-60", or null
+  bool quick = true;          // whether the quick version has records of it
 };
 
 // An order of two figures, which holds or does not hold of ours.
@@ -69,13 +73,14 @@ struct ReproducedRank {
   std::string above, below, column;  // names
   // Whose claim it is. The thesis's figures, where it has both, agree with its own.
   bool of_thesis = true;
+  bool of_order = false;  // one of all that the thesis's figures of its column say
 };
 
 // Differences to one row, record by record of equal `by`.
 struct PairedDifference {
-  std::string to;      // a row's name
-  std::string column;  // a column's name
-  std::string by;      // "seed"
+  std::string to;                    // a row's name
+  std::vector<std::string> columns;  // names
+  std::string by;                    // "seed"
 };
 
 // Blocks of the report of a study's run.

@@ -19,7 +19,7 @@ studies:
     quick: {solver: greedy}
 columns: [{name: score, figure: score}]
 rows:
-  - {name: Ours, where: {solver: local_search}, thesis: [9]}
+  - {name: Ours, where: {solver: local_search}, thesis: [9], quick: false}
   - {name: Greedy, where: {solver: greedy}, thesis: [8]}
 ranks: [{above: Ours, below: Greedy, column: score}]
 differs: [Four nodes are no town.]
@@ -268,6 +268,14 @@ TEST_F(Reproduce, RefusesWhatIsNotThere) {
   EXPECT_NE(from_json(bad.out, "answer").at("error").as_text().find("study 'nodes' of table 9.1"),
             std::string::npos)
       << bad.out;
+  // The reason is said once, and the folder is free for a corrected file.
+  EXPECT_FALSE(fs::exists(folder_ / "out/reproduce/9.1"));
+  const Finished once = reproduce({"9.1", "--data", "data"});
+  const std::size_t reason = once.err.find("nodes.txt:1");
+  EXPECT_NE(reason, std::string::npos) << once.err;
+  EXPECT_EQ(once.err.find("nodes.txt:1", reason + 1), std::string::npos) << once.err;
+  write_file_atomically(folder_ / "data/nodes.txt", kInstance);
+  EXPECT_EQ(reproduce({"9.1", "--data", "data"}).status, 0);
   fs::create_directories(folder_ / "full");
   fs::create_directories(folder_ / "full/9.1");
   write_file_atomically(folder_ / "full/9.1/mine.txt", "mine");

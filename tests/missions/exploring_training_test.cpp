@@ -151,6 +151,10 @@ rounds:
     EXPECT_THAT(read_file(errors), testing::HasSubstr(expected));
     EXPECT_FALSE(fs::exists(folder_ / "b.model.training")) << other;
   }
+  write_file_atomically(recipe, text);
+  EXPECT_EQ(train("b.model", "--hours 1 --mapping rang=10"), 2);
+  EXPECT_THAT(read_file(errors), testing::HasSubstr("did you mean 'range'"));
+  EXPECT_FALSE(fs::exists(folder_ / "b.model.training"));
   fs::remove(recipe);
   EXPECT_EQ(train("b.model", "--hours 1"), 2);
   EXPECT_THAT(read_file(errors), testing::HasSubstr("tiny.yaml"));
