@@ -1,5 +1,5 @@
 -- SPDX-License-Identifier: Apache-2.0
--- A street between plain houses, as large and as simple as the thesis's.
+-- A street between plain houses, to see what geometry does to a scan.
 local scan = require "mission.scan"
 
 return scan.of_scene {
