@@ -308,12 +308,15 @@ Value to_value(const ReproducedCell& cell) {
   return value;
 }
 
+bool has_figures(const RankFound& found) {
+  return std::isfinite(found.above) && std::isfinite(found.below);
+}
+
 std::string rank_sentence(const RankFound& found) {
   std::string text = found.rank.column + ": '" + found.rank.above + "' above '" + found.rank.below +
                      "', as " + (found.rank.of_thesis ? "in the thesis" : "expected of Lapwing") +
                      "? ";
-  if (!std::isfinite(found.above) || !std::isfinite(found.below))
-    return text + "One of them has no figure";
+  if (!has_figures(found)) return text + "One of them has no figure";
   text += found.holds() ? "Yes" : "NO";
   if (!std::isfinite(found.interval))
     text += ", intervals unknown";
@@ -326,10 +329,11 @@ std::string rank_sentence(const RankFound& found) {
 std::string order_sentences(const ReproducedTable& table) {
   std::string text;
   for (const ReproducedColumn& column : table.made.columns) {
-    std::size_t all = 0, held = 0, open = 0, unknown = 0;
+    std::size_t all = 0, none = 0, held = 0, open = 0, unknown = 0;
     for (const RankFound& found : table.ranks) {
       if (!found.rank.of_order || found.rank.column != column.name) continue;
       ++all;
+      none += !has_figures(found);
       if (!found.holds()) continue;
       ++held;
       if (!std::isfinite(found.interval))
@@ -338,10 +342,11 @@ std::string order_sentences(const ReproducedTable& table) {
         ++open;
     }
     if (all == 0) continue;
-    text += "* " + column.name + ": of " + std::to_string(all) +
-            " orders of two rows in the thesis, " + std::to_string(held) + " hold here; " +
-            std::to_string(open) + " of them within the intervals" +
-            (unknown > 0 ? ", " + std::to_string(unknown) + " with unknown intervals" : "") + ".\n";
+    text +=
+        "* " + column.name + ": of " + std::to_string(all) + " orders of two rows in the thesis, " +
+        (none > 0 ? std::to_string(none) + " have no figures here and " : "") +
+        std::to_string(held) + " hold; " + std::to_string(open) + " of them within the intervals" +
+        (unknown > 0 ? ", " + std::to_string(unknown) + " with unknown intervals" : "") + ".\n";
   }
   return text;
 }
@@ -487,7 +492,8 @@ std::string table_notes(const ReproducedTable& table) {
   for (const std::string& sentence : table.warnings) text += "! " + sentence + "\n";
   text += order_sentences(table);
   for (const RankFound& rank : table.ranks)
-    if (!rank.rank.of_order || !rank.holds()) text += "* " + rank_sentence(rank) + ".\n";
+    if (!rank.rank.of_order || (has_figures(rank) && !rank.holds()))
+      text += "* " + rank_sentence(rank) + ".\n";
   if (!table.made.differs.empty()) text += "Why the figures differ from the thesis's:\n";
   for (const std::string& sentence : table.made.differs) text += "* " + sentence + "\n";
   return text;
@@ -541,7 +547,7 @@ Value to_value(const ReproducedTable& table) {
     rank.set("below", found.rank.below);
     rank.set("column", found.rank.column);
     rank.set("claim", found.rank.of_thesis ? "thesis" : "lapwing");
-    const bool known = std::isfinite(found.above) && std::isfinite(found.below);
+    const bool known = has_figures(found);
     rank.set("holds", known ? Value(found.holds()) : Value());
     rank.set("clear", known && std::isfinite(found.interval) ? Value(found.clear()) : Value());
     ranks.push_back(std::move(rank));

@@ -176,12 +176,13 @@ rows:
   - {name: B, where: {method: b}, thesis: [30, 7]}
   - {name: C, where: {method: c}, thesis: [20, null]}
   - {name: D, where: {method: d}}
+  - {name: E, where: {method: e}, thesis: [10, null]}
 ranks: [{order: F}, {above: D, below: A, column: F, claim: lapwing}]
 paired: {to: B, column: [F, G], by: seed}
 )");
   const Reproduction made = read_reproduction(folder_, "9.2");
-  ASSERT_EQ(made.ranks.size(), 3u) << "A and C are equal, and D has no figure";
-  for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(made.ranks[k].above, "B");
+  ASSERT_EQ(made.ranks.size(), 6u) << "A and C are equal, and D has no figure in the thesis";
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(made.ranks[k].above, "B");
   const ReproducedTable table =
       reproduced_table(made,
                        {{{"s", ""},
@@ -195,11 +196,12 @@ paired: {to: B, column: [F, G], by: seed}
   EXPECT_EQ(table.below[0][0]->mean, 1);
   EXPECT_EQ(table.below[0][1]->mean, 4);
   const std::string notes = table_notes(table);
-  EXPECT_NE(notes.find("* F: of 2 orders of two rows in the thesis, 1 hold here; 0 of them within "
-                       "the intervals, 1 with unknown intervals.\n"),
+  EXPECT_NE(notes.find("* F: of 5 orders of two rows in the thesis, 3 have no figures here and 1 "
+                       "hold; 0 of them within the intervals, 1 with unknown intervals.\n"),
             std::string::npos)
       << notes;
   EXPECT_EQ(notes.find("'B' above 'A'"), std::string::npos) << "it holds: it is counted";
+  EXPECT_EQ(notes.find("above 'E'"), std::string::npos) << "it was not run";
   EXPECT_NE(notes.find("'B' above 'C', as in the thesis? NO"), std::string::npos) << notes;
   EXPECT_NE(notes.find("'D' above 'A', as expected of Lapwing? Yes"), std::string::npos) << notes;
   EXPECT_NE(refusal("ranks: [{above: A, below: B, column: F}]", "ranks: [{order: time}]")
