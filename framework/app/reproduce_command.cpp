@@ -19,7 +19,7 @@
 #include "framework/core/visible_text.h"
 #include "framework/explore/view_utility.h"
 #include "framework/export/report_value.h"
-#include "framework/study/reproduced_table.h"
+#include "framework/study/reproduced_report.h"
 
 namespace lapwing {
 namespace {

@@ -27,6 +27,7 @@ struct RankFound {
   // Half the width of the 95 % interval of their difference: by pairs if the table has pairs of
   // both, else as if they did not depend on each other. Not a number: unknown, of single records.
   double interval = 0;
+  bool has_figures() const { return std::isfinite(above) && std::isfinite(below); }
   bool holds() const { return above > below; }
   bool clear() const { return std::abs(above - below) > interval; }
 };
@@ -58,17 +59,5 @@ ReproducedTable reproduced_table(const Reproduction& made,
 // version leaves out rows and columns that say so.
 void require_records(const Reproduction& made, const std::map<RecordSource, Value::List>& records,
                      bool quick);
-
-// The blocks that are asked for, of the sections of a run's report. InputError naming what is not
-// there, and what is.
-Section chosen_pictures(const ReproducedPictures& asked, const std::vector<Section>& sections);
-
-// Rows of cells for a terminal, with titles first; none of a figure of pictures alone.
-std::vector<std::vector<std::string>> table_cells(const ReproducedTable& table);
-// Captions, ranks and what differs, as lines of text.
-std::string table_notes(const ReproducedTable& table);
-std::string table_csv(const ReproducedTable& table);
-Value to_value(const ReproducedTable& table);
-Report table_report(const ReproducedTable& table);
 
 }  // namespace lapwing

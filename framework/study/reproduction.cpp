@@ -191,6 +191,11 @@ ReproducedPictures pictures_from(const Value& value, const std::vector<Reproduce
   return pictures;
 }
 
+std::size_t column_place(const Reproduction& made, const std::string& name, const Origin& origin) {
+  return static_cast<std::size_t>(&named(made.columns, name, "column", origin) -
+                                  made.columns.data());
+}
+
 Value::List one_or_more(const Value& value) {
   return value.is_list() ? value.as_list() : Value::List{value};
 }
@@ -199,8 +204,7 @@ Value::List one_or_more(const Value& value) {
 void require_claimed(const Reproduction& made, const ReproducedRank& rank, const Origin& origin) {
   const ReproducedRow& above = named(made.rows, rank.above, "row", origin);
   const ReproducedRow& below = named(made.rows, rank.below, "row", origin);
-  const std::size_t column = static_cast<std::size_t>(
-      &named(made.columns, rank.column, "column", origin) - made.columns.data());
+  const std::size_t column = column_place(made, rank.column, origin);
   if (!rank.of_thesis) return;
   const Value &more = above.thesis[column], &less = below.thesis[column];
   if (more.is_number() && less.is_number()) {
@@ -217,8 +221,7 @@ void require_claimed(const Reproduction& made, const ReproducedRank& rank, const
 
 // Every two rows whose figures differ in the thesis.
 void add_order(const std::string& name, const Origin& origin, Reproduction& made) {
-  const std::size_t column =
-      static_cast<std::size_t>(&named(made.columns, name, "column", origin) - made.columns.data());
+  const std::size_t column = column_place(made, name, origin);
   std::vector<const ReproducedRow*> rows;
   for (const ReproducedRow& row : made.rows)
     if (row.thesis[column].is_number()) rows.push_back(&row);

@@ -9,7 +9,7 @@
 #include "framework/core/error.h"
 #include "framework/core/files.h"
 #include "framework/core/json.h"
-#include "framework/study/reproduced_table.h"
+#include "framework/study/reproduced_report.h"
 
 namespace lapwing {
 namespace {
