@@ -39,27 +39,35 @@ class Places {
   Places(const Registry& registry, std::vector<fs::path> data, fs::path studies)
       : registry_(registry), data_(std::move(data)), studies_(std::move(studies)) {}
 
-  std::string filled(const std::string& word) {
-    std::string out;
-    for (std::size_t at = 0; at < word.size();) {
-      const std::size_t open = word.find('{', at), close = word.find('}', open);
-      if (close == word.npos) return out + word.substr(at);
-      out += word.substr(at, open - at) + place(word.substr(open + 1, close - open - 1));
-      at = close + 1;
-    }
-    return out;
+  // Studies are filled in their order: one may read what those before it made.
+  std::vector<std::string> filled(const ReproducedStudy& study, bool quick) {
+    std::vector<std::string> words;
+    for (const std::string& word : study.words(quick)) words.push_back(filled(word, study));
+    before_.push_back(study.name);
+    return words;
   }
 
   const std::vector<std::string>& missing() const { return missing_; }
 
  private:
-  std::string place(const std::string& text) {
+  std::string filled(const std::string& word, const ReproducedStudy& study) {
+    std::string out;
+    for (std::size_t at = 0; at < word.size();) {
+      const std::size_t open = word.find('{', at), close = word.find('}', open);
+      if (close == word.npos) return out + word.substr(at);
+      out += word.substr(at, open - at) + place(word.substr(open + 1, close - open - 1), study);
+      at = close + 1;
+    }
+    return out;
+  }
+
+  std::string place(const std::string& text, const ReproducedStudy& study) {
     const std::size_t colon = std::min(text.find(':'), text.size());
     const std::string kind = text.substr(0, colon);
     const std::string name = colon < text.size() ? text.substr(colon + 1) : "";
     if (kind == "examples") return shipped_folder("examples").string();
     if (kind == "here") return definitions().string();
-    if (kind == "study") return (studies_ / name).string();
+    if (kind == "study") return made_before(name, study);
     if (kind == "model") {
       const fs::path library = registry_.find(ViewUtility::kKind, name).library;
       return (library.parent_path() / (name + ".model")).string();
@@ -68,10 +76,20 @@ class Places {
     const bool a_word =
         !text.empty() && text.find_first_not_of("abcdefghijklmnopqrstuvwxyz_") == text.npos;
     if (a_word)
-      throw InputError("no place {" + text +
-                       "}: there are {examples}, {here}, {data:FILE}, {model:UTILITY} and "
-                       "{study:NAME}");
+      throw InputError(study.origin,
+                       "study '" + study.name + "': no place {" + text +
+                           "}: there are {examples}, {here}, {data:FILE}, {model:UTILITY} and "
+                           "{study:NAME}");
     return "{" + text + "}";  // a table of YAML's, such as --set region={...}
+  }
+
+  std::string made_before(const std::string& name, const ReproducedStudy& study) const {
+    if (std::find(before_.begin(), before_.end(), name) != before_.end())
+      return (studies_ / name).string();
+    std::string names;
+    for (const std::string& one : before_) names += (names.empty() ? "" : ", ") + one;
+    throw InputError(study.origin, "study '" + study.name + "': no study '" + name + "' before it" +
+                                       (names.empty() ? "" : "; there are ") + names);
   }
 
   std::string data_file(const std::string& name) {
@@ -85,6 +103,7 @@ class Places {
   const Registry& registry_;
   std::vector<fs::path> data_;
   fs::path studies_;
+  std::vector<std::string> before_;  // names of the studies filled so far
   std::vector<std::string> missing_;
 };
 
@@ -120,8 +139,8 @@ const CommandWays& ways_of(const ReproducedStudy& study) {
     if (study.command == ways.command) return ways;
     all += (all.empty() ? "" : ", ") + std::string(ways.command);
   }
-  throw InputError("study '" + study.name + "': '" + study.command +
-                   "' is not a command of studies: " + all);
+  throw InputError(study.origin, "study '" + study.name + "': '" + study.command +
+                                     "' is not a command of studies: " + all);
 }
 
 class Reproducing {
@@ -166,9 +185,7 @@ class Reproducing {
     Places places(registry_, settings.data, studies());
     for (const ReproducedStudy& study : made_.studies) {
       ways_of(study);
-      std::vector<std::string>& words = words_.emplace_back();
-      for (const std::string& word : study.words(asked_.quick))
-        words.push_back(places.filled(word));
+      words_.push_back(places.filled(study, asked_.quick));
     }
     if (places.missing().empty()) return;
     std::string names;
@@ -195,43 +212,82 @@ class Reproducing {
     return sums;
   }
 
-  // All in a folder is of one version.
-  void claim_version() const {
+  // What results depend on. Of studies and files, each by itself: what is not made yet may change.
+  Value version() const {
     Value stated = Value::map();
-    stated.set("format", 1);
+    stated.set("format", 2);
     stated.set("program", std::string("lapwing ") + program_version());
     stated.set("executable", program_checksum());
     stated.set("table", made_.owner);
     stated.set("quick", asked_.quick);
-    stated.set("studies", made_.checksum_of_studies());
-    stated.set("files", checksums_of_files());
     stated.set("scripts", checksum_of_folder(shipped_folder("scripts")));
     stated.set("configs", checksum_of_folder(shipped_folder("configs"), {"reproduce"}));
     stated.set("plugins", sha256(to_json(plugin_checksums(registry_))));
+    Value& told = stated.set("studies", Value::map());
+    for (const ReproducedStudy& study : made_.studies) told.set(study.name, study.checksum());
+    stated.set("files", checksums_of_files());
+    return stated;
+  }
+
+  // All in a folder is of one version. Tables may share it: it says which were asked for.
+  void claim_version() const {
     const fs::path file = studies() / "reproduction.json";
-    if (!fs::exists(file)) {
+    Value claimed = version();
+    Value tables = Value::list();
+    if (fs::exists(file)) {
+      const Value there = from_json(read_file(file), file.string());
+      if (const Value* asked = there.find("tables")) tables = *asked;
+      const bool again =
+          std::count(tables.as_list().begin(), tables.as_list().end(), Value(made_.name)) > 0;
+      if (again && !asked_.resume)
+        throw InputError("'" + studies().string() + "' contains a reproduction of " + made_.thesis +
+                         ": continue it with --resume, or choose another folder with --out");
+      require_same(there, claimed, file);
+      // What other tables and earlier definitions named stays named.
+      for (const char* key : {"studies", "files"})
+        for (const auto& [name, sum] : there.at(key).as_map())
+          if (!claimed.at(key).find(name)) claimed.find(key)->set(name, sum);
+      if (!again) tables.push_back(made_.name);
+    } else {
       if (fs::exists(studies()) && !fs::is_empty(studies()))
         throw InputError("'" + studies().string() +
                          "' is not empty, and not of a reproduction: choose another folder with "
                          "--out");
-      write_file_atomically(file, to_json(stated) + "\n");
-      return;
+      tables.push_back(made_.name);
     }
-    // Another table of the same studies may join without a word.
-    if (!asked_.resume && made_.owner == made_.name)
-      throw InputError("'" + studies().string() +
-                       "' contains a reproduction: continue it with --resume, or choose another "
-                       "folder with --out");
-    const Value there = from_json(read_file(file), file.string());
-    for (const auto& [key, value] : stated.as_map()) {
+    claimed.set("tables", std::move(tables));
+    write_file_atomically(file, to_json(claimed) + "\n");
+  }
+
+  void require_same(const Value& there, const Value& here, const fs::path& file) const {
+    for (const auto& [key, value] : here.as_map()) {
       const Value* before = there.find(key);
       if (before && *before == value) continue;
+      std::string what = key;
+      if (before && before->is_map() && value.is_map()) {
+        what = changed(key, *before, value);
+        if (what.empty()) continue;
+      } else {
+        what += " is " + (before ? to_json(*before, -1) : "not said") + " there, " +
+                to_json(value, -1) + " here";
+      }
       throw InputError("'" + file.string() + "': the reproduction there is of another version (" +
-                       key + " is " + (before ? to_json(*before, -1) : "not said") + " there, " +
-                       to_json(value, -1) +
-                       " here): --resume continues the same one only; choose another folder with "
+                       what +
+                       "): --resume continues the same one only; choose another folder with "
                        "--out");
     }
+  }
+
+  // The first study or file that is another one than there; "" if what differs is not made yet.
+  std::string changed(const std::string& key, const Value& there, const Value& here) const {
+    for (const auto& [name, sum] : here.as_map()) {
+      const Value* before = there.find(name);
+      if (!before || *before == sum) continue;
+      if (key == "files") return "file '" + name + "' is another one";
+      if (fs::exists(answer_of(name)) || fs::exists(studies() / name))
+        return "study '" + name + "' was told something else";
+    }
+    return "";
   }
 
   // A folder in which nothing was made is free for a corrected table: its claim takes it away.

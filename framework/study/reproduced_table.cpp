@@ -114,6 +114,7 @@ class Assembly {
         require(source, join_places(column.figure, row.figure));
         for (const Value* where : {&row.where, &column.where})
           for (const auto& [place, wanted] : where->as_map()) require(source, place);
+        if (is_paired(column)) require(source, made_.paired->by);
       }
   }
 
@@ -200,6 +201,12 @@ class Assembly {
   }
 
  private:
+  bool is_paired(const ReproducedColumn& column) const {
+    if (!made_.paired) return false;
+    const std::vector<std::string>& names = made_.paired->columns;
+    return std::find(names.begin(), names.end(), column.name) != names.end();
+  }
+
   // That fits all of `wheres`.
   bool has_record(const RecordSource& source, std::initializer_list<const Value*> wheres) const {
     const Value::List& all = records_.at(source);

@@ -93,6 +93,7 @@ ReproducedStudy study_from(const std::string& name, const Value& value) {
     study.arguments.push_back(word_of(argument));
   study.options = given.map("options");
   study.quick = given.map("quick");
+  study.origin = value.origin();
   return study;
 }
 
@@ -349,17 +350,12 @@ std::vector<std::string> reproduction_names(const fs::path& folder) {
   return names;
 }
 
-std::string Reproduction::checksum_of_studies() const {
-  Value all = Value::list();
-  for (const ReproducedStudy& study : studies) {
-    Value one = Value::map();
-    one.set("name", study.name);
-    one.set("command", study.command);
-    one.set("arguments", Value(Value::List(study.arguments.begin(), study.arguments.end())));
-    one.set("options", study.options);
-    one.set("quick", study.quick);
-    all.push_back(std::move(one));
-  }
+std::string ReproducedStudy::checksum() const {
+  Value all = Value::map();
+  all.set("command", command);
+  all.set("arguments", Value(Value::List(arguments.begin(), arguments.end())));
+  all.set("options", options);
+  all.set("quick", quick);
   return sha256(to_json(all));
 }
 

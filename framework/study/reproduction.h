@@ -42,8 +42,12 @@ struct ReproducedStudy {
   Value options = Value::map();
   Value quick = Value::map();  // laid over the options when there is little time
 
+  Origin origin;  // in the file of its table
+
   // The command's words: arguments, then options, of which a list gives one each and `true` a flag.
   std::vector<std::string> words(bool quickly) const;
+  // SHA-256 of all that it is told: results of another one are others.
+  std::string checksum() const;
 };
 
 struct ReproducedColumn {
@@ -103,9 +107,6 @@ struct Reproduction {
   std::vector<ReproducedPictures> pictures;
   std::vector<std::string> differs;
   std::string chart_axis, chart_unit;  // not empty: columns are places on this axis, named by it
-
-  // SHA-256 of all that the studies are told: results of another one are others.
-  std::string checksum_of_studies() const;
 };
 
 // Of the YAML files of a folder, by chapter, tables first: "4.1", "4.2", "figure_4.12", "5.1".

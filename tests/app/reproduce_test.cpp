@@ -19,9 +19,9 @@ studies:
     quick: {solver: greedy}
 columns: [{name: score, figure: score}]
 rows:
-  - {name: Ours, where: {solver: local_search}, thesis: [9], quick: false}
+  - {name: Local search, where: {solver: local_search}, thesis: [9], quick: false}
   - {name: Greedy, where: {solver: greedy}, thesis: [8]}
-ranks: [{above: Ours, below: Greedy, column: score}]
+ranks: [{above: Local search, below: Greedy, column: score}]
 differs: [Four nodes are no town.]
 )";
 
@@ -113,7 +113,8 @@ TEST_F(Reproduce, GoesOnWithWhatIsThereAndOnlyWithTheSame) {
   std::string more = kTable;
   more.replace(more.find("[greedy, local_search]"), 22, "[greedy, local_search, cost_benefit]");
   write_table(more);
-  EXPECT_NE(reproduce({"9.1", "--data", "data", "--resume"}).err.find("(studies is"),
+  EXPECT_NE(reproduce({"9.1", "--data", "data", "--resume"})
+                .err.find("(study 'nodes' was told something else)"),
             std::string::npos);
   write_table(kTable);
   // No result depends on a document; on a configuration it may.
@@ -125,7 +126,58 @@ TEST_F(Reproduce, GoesOnWithWhatIsThereAndOnlyWithTheSame) {
   fs::remove(home_ / "configs/more.yaml");
   write_file_atomically(folder_ / "data/nodes.txt", std::string(kInstance) + "3 3 1\n");
   const Finished others = reproduce({"9.1", "--data", "data", "--resume"});
-  EXPECT_NE(others.err.find("(files is"), std::string::npos) << others.err;
+  EXPECT_NE(others.err.find("nodes.txt' is another one)"), std::string::npos) << others.err;
+}
+
+TEST_F(Reproduce, AStudyIsCorrectedWithoutTheLossOfTheOthers) {
+  std::string text = kTable;
+  const std::string second =
+      "  more: {command: tour, arguments: [\"{data:nodes.txt}\"], options: "
+      "{solvr: greedy}}\n";
+  text.insert(text.find("columns:"), second);
+  text.replace(text.find("{name: Local search,"), 20, "{name: Local search, study: nodes,");
+  text.replace(text.find("{name: Greedy,"), 14, "{name: Greedy, study: nodes,");
+  write_table(text);
+  const Finished failed = reproduce({"9.1", "--data", "data"});
+  EXPECT_EQ(failed.status, 2);
+  EXPECT_NE(failed.err.find("study 'more' of table 9.1"), std::string::npos) << failed.err;
+  const std::string made = read_file(folder_ / "out/reproduce/9.1/nodes.json");
+  text.replace(text.find("solvr"), 5, "solver");
+  write_table(text);
+  const Finished corrected = reproduce({"9.1", "--data", "data", "--resume"});
+  EXPECT_EQ(corrected.status, 0) << corrected.err;
+  EXPECT_EQ(read_file(folder_ / "out/reproduce/9.1/nodes.json"), made);
+  // Now it is made, and may change no more.
+  text.replace(text.find("{solver: greedy}}"), 17, "{solver: local_search}}");
+  write_table(text);
+  EXPECT_NE(reproduce({"9.1", "--data", "data", "--resume"})
+                .err.find("(study 'more' was told something else)"),
+            std::string::npos);
+}
+
+TEST_F(Reproduce, TablesShareStudiesInAnyOrder) {
+  const std::string shared = R"(
+title: The same tours
+thesis: table 9.2
+from: "9.1"
+columns: [{name: score, figure: score}]
+rows: [{name: Greedy, where: {solver: greedy}}]
+differs: [Four nodes are no town.]
+)";
+  write_file_atomically(home_ / "configs/reproduce/9.2.yaml", shared);
+  for (const auto& [first, second] : {std::pair{"9.1", "9.2"}, {"9.2", "9.1"}}) {
+    const std::string out = std::string("from_") + first;
+    ASSERT_EQ(reproduce({first, "--data", "data", "-o", out}).status, 0);
+    const std::string made = read_file(folder_ / out / "9.1/nodes.json");
+    const Finished other = reproduce({second, "--data", "data", "-o", out});
+    EXPECT_EQ(other.status, 0) << other.err;
+    EXPECT_EQ(read_file(folder_ / out / "9.1/nodes.json"), made);
+    for (const char* table : {"9.1", "9.2"}) {
+      EXPECT_TRUE(fs::exists(folder_ / out / table / "table.txt")) << table;
+      const Finished again = reproduce({table, "--data", "data", "-o", out});
+      EXPECT_NE(again.err.find("continue it with --resume"), std::string::npos) << again.err;
+    }
+  }
 }
 
 TEST_F(Reproduce, AFigureShowsPicturesOfItsRuns) {
@@ -212,6 +264,13 @@ TEST_F(Reproduce, AMistakeInOneTableLeavesTheOthers) {
   const Finished place = reproduce({"9.1", "--data", "data", "-o", "other"});
   EXPECT_EQ(place.status, 2);
   EXPECT_NE(place.err.find("no place {hear}"), std::string::npos) << place.err;
+  EXPECT_NE(place.err.find("9.1.yaml:"), std::string::npos) << place.err;
+  text = kTable;
+  text.replace(text.find("{data:nodes.txt}"), 16, "{study:nodes}/nodes.txt");
+  write_table(text);
+  const Finished itself = reproduce({"9.1", "--data", "data", "-o", "other"});
+  EXPECT_NE(itself.err.find("study 'nodes': no study 'nodes' before it"), std::string::npos)
+      << itself.err;
   EXPECT_FALSE(fs::exists(folder_ / "other"));
   // A place of a record that is not there, after them.
   text = kTable;
@@ -221,6 +280,11 @@ TEST_F(Reproduce, AMistakeInOneTableLeavesTheOthers) {
   EXPECT_EQ(figure.status, 2);
   EXPECT_NE(figure.err.find("no record of study 'nodes' has 'skore'"), std::string::npos)
       << figure.err;
+  // Pairs by what no record has.
+  write_table(std::string(kTable) + "paired: {to: Greedy, column: score, by: seeed}\n");
+  const Finished by = reproduce({"9.1", "--data", "data", "-o", "third", "--resume"});
+  EXPECT_EQ(by.status, 2);
+  EXPECT_NE(by.err.find("no record of study 'nodes' has 'seeed'"), std::string::npos) << by.err;
   // A method that none of them used.
   text = kTable;
   text.replace(text.find("{solver: greedy}, thesis"), 16, "{solver: gredy}");

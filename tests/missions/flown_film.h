@@ -40,6 +40,14 @@ class Filming : public ::testing::Test {
   }
   ~Filming() override { fs::remove_all(folder_); }
 
+  // How many times slower this machine is now than one with two free cores.
+  double slowness() const {
+    const fs::path said = folder_ / "slowness.txt";
+    const std::string script = LAPWING_SOURCE_DIR "/scripts/machine_speed.sh";
+    EXPECT_EQ(std::system(("bash '" + script + "' > '" + said.string() + "'").c_str()), 0);
+    return std::strtod(read_file(said).c_str(), nullptr);
+  }
+
   // `worst`: the highest status that is no surprise.
   Flown fly(const std::string& example, const std::string& more = "", const char* name = "out",
             int worst = 1) {

@@ -4,10 +4,14 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <map>
+#include <regex>
 #include <set>
 
 #include "framework/core/error.h"
 #include "framework/core/files.h"
+#include "framework/core/json.h"
 #include "framework/study/reproduction.h"
 
 namespace lapwing {
@@ -107,37 +111,103 @@ std::vector<std::string> worlds_of(const std::string& text) {
   return worlds;
 }
 
+using Worlds = std::set<std::string>;
+
+const fs::path kConfigs = fs::path(LAPWING_SOURCE_DIR) / "configs";
+const fs::path kLearned = fs::path(LAPWING_SOURCE_DIR) / "plugins/utilities/learned";
+
+void add_worlds(const ReproducedStudy& study, Worlds& worlds) {
+  for (const Value* options : {&study.options, &study.quick}) {
+    const Value* given = options->find("world");
+    if (!given) continue;
+    const Value::List one{*given};
+    for (const Value& text : given->is_list() ? given->as_list() : one)
+      for (const std::string& world : worlds_of(text.as_text())) worlds.insert(world);
+  }
+}
+
+// Of the explorations whose figures the readmes print: those of configs/reproduce, unless they are
+// training of their own, and the commands of the experiments with the learned utilities.
+Worlds worlds_of_figures() {
+  Worlds worlds;
+  for (const std::string& name : reproduction_names(kConfigs / "reproduce"))
+    if (name != "5.5.1")
+      for (const ReproducedStudy& study : read_reproduction(kConfigs / "reproduce", name).studies)
+        add_worlds(study, worlds);
+  const std::string text = read_file(kLearned / "EXPERIMENTS.md");
+  const std::regex command("lapwing evaluate explore[^`]*"), world("--world\\s+([a-z_:0-9-]+)");
+  for (std::sregex_iterator at(text.begin(), text.end(), command), end; at != end; ++at) {
+    const std::string words = at->str();
+    for (std::sregex_iterator one(words.begin(), words.end(), world); one != end; ++one)
+      for (const std::string& found : worlds_of((*one)[1].str())) worlds.insert(found);
+  }
+  return worlds;
+}
+
+// "worlds" of a model's provenance and of the models that it began from: "downtown 12".
+void add_provenance(const Value& provenance, Worlds& worlds) {
+  if (const Value* list = provenance.find("worlds"))
+    for (const Value& entry : list->as_list()) {
+      std::string world = entry.as_text();
+      std::replace(world.begin(), world.end(), ' ', ':');
+      worlds.insert(world);
+    }
+  if (const Value* begin = provenance.find("begin")) add_provenance(*begin, worlds);
+}
+
+Worlds worlds_of_model(const fs::path& file) {
+  const std::string bytes = read_file(file);
+  const std::size_t header = bytes.find('{'), end = bytes.find('\n', header);
+  Worlds worlds;
+  add_provenance(from_json(bytes.substr(header, end - header), file.string()).at("provenance"),
+                 worlds);
+  return worlds;
+}
+
+void expect_apart(const Worlds& some, const Worlds& others, const std::string& what) {
+  for (const std::string& world : some)
+    EXPECT_FALSE(others.contains(world)) << what << ": " << world;
+}
+
 // Whoever is judged by what it was trained with is told nothing.
-TEST(ShippedRecipe, KnowsNoWorldOfTheFigures) {
+TEST(ShippedModels, KnowNoWorldOfTheFigures) {
   EXPECT_EQ(worlds_of("suburb:2-4"),
             (std::vector<std::string>{"suburb:2", "suburb:3", "suburb:4"}));
-  const fs::path configs = fs::path(LAPWING_SOURCE_DIR) / "configs";
-  const TrainingRecipe recipe = read_recipe(configs / "train/learned.yaml");
-  std::set<std::string> trained;
+  const Worlds figures = worlds_of_figures();
+  for (const char* world :
+       {"street:1", "street:3", "suburb:1", "suburb:2", "church:1", "downtown:201", "district:201",
+        "towers:1", "courtyard:1", "office:1", "office:2", "downtown:801"})
+    EXPECT_TRUE(figures.contains(world)) << world;
+
+  const TrainingRecipe recipe = read_recipe(kConfigs / "train/learned.yaml");
+  Worlds of_recipe;
   const auto add = [&](const RecipeSamples& samples) {
     for (const std::string& scene : samples.scenes)
       for (std::int64_t seed = samples.first; seed <= samples.last; ++seed)
-        trained.insert(scene + ":" + std::to_string(seed));
+        of_recipe.insert(scene + ":" + std::to_string(seed));
   };
   for (const RecipeSamples& samples : recipe.validation) add(samples);
   for (const RecipeRound& round : recipe.rounds)
     for (const RecipeSamples& samples : round.samples) add(samples);
-  EXPECT_GT(trained.size(), 300u);
-  int worlds = 0;
-  for (const std::string& name : reproduction_names(configs / "reproduce"))
-    for (const ReproducedStudy& study : read_reproduction(configs / "reproduce", name).studies)
-      for (const Value* options : {&study.options, &study.quick}) {
-        const Value* given = options->find("world");
-        if (!given) continue;
-        const Value::List one{*given};
-        for (const Value& world : given->is_list() ? given->as_list() : one) {
-          for (const std::string& one_world : worlds_of(world.as_text())) {
-            EXPECT_FALSE(trained.contains(one_world)) << one_world << " of " << name;
-            ++worlds;
-          }
-        }
-      }
-  EXPECT_GT(worlds, 10);
+  EXPECT_GT(of_recipe.size(), 300u);
+  expect_apart(figures, of_recipe, "the recipe");
+  for (const char* name : {"learned", "learned_grid"}) {
+    const Worlds trained = worlds_of_model(kLearned / (std::string(name) + ".model"));
+    EXPECT_GT(trained.size(), 40u) << name;
+    expect_apart(figures, trained, name);
+  }
+}
+
+TEST(ShippedReproductions, TrainValidateAndTestInDifferentWorlds) {
+  std::map<std::string, Worlds> by_use;
+  for (const ReproducedStudy& study : read_reproduction(kConfigs / "reproduce", "5.5.1").studies)
+    if (study.command == "train dataset")
+      add_worlds(study, by_use[study.name.substr(0, study.name.find('_'))]);
+  ASSERT_EQ(by_use.size(), 3u);
+  expect_apart(by_use.at("training"), by_use.at("validation"), "training");
+  expect_apart(by_use.at("training"), by_use.at("test"), "training");
+  expect_apart(by_use.at("validation"), by_use.at("test"), "validation");
+  for (const auto& [use, worlds] : by_use) EXPECT_FALSE(worlds.empty()) << use;
 }
 
 }  // namespace
