@@ -88,7 +88,9 @@ void require_study_name(const std::string& name, const Origin& origin) {
 ReproducedStudy study_from(const std::string& name, const Value& value) {
   require_study_name(name, value.origin());
   const KnownMap given(value, "study " + name, {"command", "arguments", "options", "quick"});
-  ReproducedStudy study{.name = name, .command = given.need("command").as_text(), .arguments = {}};
+  ReproducedStudy study;
+  study.name = name;
+  study.command = given.need("command").as_text();
   for (const Value& argument : given.list("arguments"))
     study.arguments.push_back(word_of(argument));
   study.options = given.map("options");

@@ -441,7 +441,8 @@ TEST_F(Reproductions, AFigureMayBePicturesAlone) {
   ASSERT_EQ(made.pictures.size(), 2u);
   std::vector<Section> sections{{"Path", {}}};
   sections[0].blocks = {PathView{"from above, in metres", Projection::above, {}},
-                        TextBlock{"words"}, PathView{"from the south", Projection::from_south, {}}};
+                        TextBlock{.text = "words", .folded_title = {}},
+                        PathView{"from the south", Projection::from_south, {}}};
   ReproducedTable table = reproduced_table(made, {}, "what was flown");
   for (const ReproducedPictures& asked : made.pictures)
     table.pictures.push_back(chosen_pictures(asked, sections));

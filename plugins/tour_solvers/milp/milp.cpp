@@ -133,7 +133,9 @@ class Milp final : public TourSolver {
  protected:
   Search search(const TourProblem& problem, TourWork& work) const override {
     FixedRewards rewards = fix_rewards(problem, work);
-    const std::vector<int> chosen = choose({problem.start(), problem.end()}, rewards.of_view);
+    LeftOut left_out;
+    const std::vector<int> chosen =
+        choose({problem.start(), problem.end()}, rewards.of_view, left_out);
     const TourProblem additive = additive_problem(problem, sum_of(rewards.of_view));
     Search result;
     result.evaluations = rewards.evaluations;
@@ -163,7 +165,11 @@ class Milp final : public TourSolver {
       if (sound && better) best = std::move(walk);
     }
     work.ended(result.evaluations, result.iterations);
-    say(problem, additive, rewards, tours, program, found, best, result);
+    left_out.arcs = !tours.complete();
+    // This may take time cubic in the views, and without all arcs nothing is proven anyway.
+    left_out.shortcuts = !left_out.arcs && !holds_shortcuts(problem, tours.chosen());
+    say(problem, additive, rewards, left_out, program, found, best, result);
+    result.message += said(left_out);
     result.walk = std::move(best);
     if (work.ending()) result.status = *work.ending();
     return result;
@@ -175,13 +181,8 @@ class Milp final : public TourSolver {
     std::set<int> ends;
     for (int t = 0; t < problem.size(); ++t)
       ends.insert({problem.tour(t).start(), problem.tour(t).end()});
-    const auto worth = [&] {
-      return std::count_if(rewards.of_view.begin(), rewards.of_view.end(),
-                           [](double reward) { return reward > 0; });
-    };
-    const std::ptrdiff_t before = worth();
-    const std::vector<int> chosen = choose(ends, rewards.of_view);
-    const std::ptrdiff_t left_out = before - worth();
+    LeftOut left_out;
+    const std::vector<int> chosen = choose(ends, rewards.of_view, left_out);
     const TeamProblem additive = additive_problem(problem, rewards.of_view);
     TeamSearch result;
     result.evaluations = rewards.evaluations;
@@ -217,14 +218,9 @@ class Milp final : public TourSolver {
     }
     work.ended(result.evaluations, result.iterations);
     say(problem, additive, rewards, team, found, best, result);
-    if (left_out > 0)
-      result.message += "; left out for less reward: " + std::to_string(left_out) + " of " +
-                        std::to_string(before) + " views";
-    if (!team.has_all_shortcuts())
-      result.message += "; views without a reward that shorten ways are left out";
-    if (!team.has_all_arcs())
-      result.message +=
-          "; arcs to all but the " + std::to_string(neighbours_) + " nearest views are left out";
+    left_out.shortcuts = !team.has_all_shortcuts();
+    left_out.arcs = !team.has_all_arcs();
+    result.message += said(left_out);
     result.walks = std::move(best);
     if (work.ending()) result.status = *work.ending();
     return result;
@@ -245,8 +241,27 @@ class Milp final : public TourSolver {
     return solve_program(program, how);
   }
 
+  // What of a problem its program does not hold.
+  struct LeftOut {
+    std::size_t views = 0, of = 0;  // with a reward
+    bool shortcuts = false, arcs = false;
+  };
+
+  std::string said(const LeftOut& left_out) const {
+    std::string text;
+    if (left_out.views > 0)
+      text += "; left out for less reward: " + std::to_string(left_out.views) + " of " +
+              std::to_string(left_out.of) + " views";
+    if (left_out.shortcuts) text += "; views without a reward that shorten ways are left out";
+    if (left_out.arcs)
+      text +=
+          "; arcs to all but the " + std::to_string(neighbours_) + " nearest views are left out";
+    return text;
+  }
+
   // The views of largest reward, with starts and ends, ascending.
-  std::vector<int> choose(const std::set<int>& ends, std::vector<double>& rewards) const {
+  std::vector<int> choose(const std::set<int>& ends, std::vector<double>& rewards,
+                          LeftOut& left_out) const {
     std::vector<int> order;
     for (int v = 0; v < static_cast<int>(rewards.size()); ++v) {
       if (rewards[v] > 0 && !ends.contains(v)) order.push_back(v);
@@ -255,6 +270,8 @@ class Milp final : public TourSolver {
                      [&](int a, int b) { return rewards[a] > rewards[b]; });
     const auto most = std::min<std::size_t>(order.size(), static_cast<std::size_t>(candidates_));
     for (std::size_t i = most; i < order.size(); ++i) rewards[order[i]] = 0;
+    left_out.of = order.size();
+    left_out.views = order.size() - most;
     order.resize(most);
     std::set<int> chosen(order.begin(), order.end());
     chosen.insert(ends.begin(), ends.end());
@@ -324,7 +341,7 @@ class Milp final : public TourSolver {
   }
 
   void say(const TourProblem& problem, const TourProblem& additive, const FixedRewards& rewards,
-           const TourProgram& tours, const IntegerProgram& program, const IntegerResult& found,
+           const LeftOut& left_out, const IntegerProgram& program, const IntegerResult& found,
            const std::vector<int>& best, Search& result) const {
     const std::string size = size_of(program, found.nodes);
     if (best.empty()) {
@@ -336,8 +353,8 @@ class Milp final : public TourSolver {
         verdict(found.optimal ? "the best tour" : "a tour", additive.score_of(best), found) + size +
         ")";
     // The program holds every tour: then CBC's bound is one.
-    if (!tours.complete() || problem.image_limit() || !std::isfinite(found.bound)) return;
-    if (!holds_shortcuts(problem, tours.chosen())) return;
+    if (left_out.arcs || left_out.shortcuts || problem.image_limit()) return;
+    if (!std::isfinite(found.bound)) return;
     if (independent(problem.score(), problem.reachable(), rewards))
       result.upper_bound = bound_of(rewards, found);
   }

@@ -97,6 +97,11 @@ TEST(Milp, TakesACapAndALimit) {
   const TourResult capped = milp(problem, {}, {{"nodes", 5}, {"candidates", 10}});
   ASSERT_EQ(problem.problem_of(capped.walk), "");
   EXPECT_GT(capped.report.score, 0);
+  const std::string& said = capped.report.message;
+  EXPECT_NE(said.find("; left out for less reward: "), said.npos) << said;
+  const std::string near = milp(problem, {}, {{"nodes", 5}, {"neighbours", 2}}).report.message;
+  EXPECT_NE(near.find("; arcs to all but the 2 nearest views are left out"), near.npos) << near;
+  EXPECT_EQ(all.report.message.find("left out for less reward"), said.npos);
   TourRequest request;
   request.iteration_limit = 1;
   EXPECT_LE(milp(problem, request, {{"candidates", 10}}).report.iterations, 2);
