@@ -234,7 +234,8 @@ Evaluation evaluation_of(const ExploreEvaluation& request, const Invocation& inv
   for (const std::string& text : invocation.overrides) apply_override(made.parameters, text);
   for (const auto& [name, given] : made.parameters.as_map()) {
     if (std::find(made.utilities.begin(), made.utilities.end(), name) == made.utilities.end())
-      throw InputError("--set " + name + ": this utility is not among those evaluated");
+      throw InputError("--set " + name +
+                       ": no utility of this name is evaluated; expected UTILITY.KEY=VALUE");
     registry.create<ViewUtility>(name, given, name);
   }
   made.stated = settings_stated(request, made, invocation);

@@ -30,7 +30,7 @@ TrainingRecipe recipe_of(const TrainRequest& request) {
     throw InputError("there is no recipe for utility '" + request.utility +
                      "': name one with --recipe FILE");
   const TrainingRecipe whole = read_recipe(request.recipe.empty() ? shipped : request.recipe);
-  return whole.within(request.hours.value_or(whole.hours));
+  return whole.within(request.hours.value_or(whole.default_hours));
 }
 
 class RecipeRun {
@@ -114,7 +114,7 @@ class RecipeRun {
     stated.set("plugins", sha256(to_json(plugin_checksums(invocation_.registry()))));
     stated.set("scripts", checksum_of_folder(shipped_folder("scripts")));
     stated.set("recipe", recipe_.checksum);
-    stated.set("hours", request_.hours.value_or(recipe_.hours));
+    stated.set("hours", request_.hours.value_or(recipe_.default_hours));
     Value& mapping = stated.set("mapping", Value::list());
     for (const std::string& entry : request_.mapping) mapping.push_back(entry);
     stated.set("seed", static_cast<std::int64_t>(invocation_.seed));

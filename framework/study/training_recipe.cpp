@@ -122,6 +122,10 @@ TrainingRecipe read_recipe(const std::filesystem::path& file) {
   recipe.hours = fields.number("hours");
   if (!(recipe.hours > 0) || !std::isfinite(recipe.hours))
     fields.add_error("hours", "expected above 0 h");
+  recipe.default_hours =
+      fields.has("default_hours") ? fields.number("default_hours") : recipe.hours;
+  if (!(recipe.default_hours > 0 && recipe.default_hours <= recipe.hours))
+    fields.add_error("default_hours", "expected above 0 h and at most `hours`");
   recipe.validation = all_samples(fields, "validation", false);
   for (Fields& entry : fields.tables("rounds")) {
     RecipeRound& round = recipe.rounds.emplace_back();

@@ -4,6 +4,7 @@
 //
 //   utility: learned
 //   hours: 6                       # for all seeds; fewer hours take fewer seeds
+//   default_hours: 1               # what is taken if nobody says; without it, all
 //   validation:
 //     - {scenes: [mine], seeds: [901, 903], explorer: frontier, steps: 80}
 //   rounds:
@@ -45,7 +46,8 @@ struct TrainingRecipe {
   static constexpr const char* kItself = "itself";
 
   std::string utility;
-  double hours = 1;  // for all seeds
+  double hours = 1;          // for all seeds
+  double default_hours = 1;  // at most `hours`
   std::vector<RecipeSamples> validation;
   std::vector<RecipeRound> rounds;
   std::string checksum;  // of the file

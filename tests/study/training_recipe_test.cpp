@@ -57,6 +57,7 @@ class RecipeFile : public testing::Test {
 TEST_F(RecipeFile, IsReadWhole) {
   const TrainingRecipe recipe = read(kWhole);
   EXPECT_EQ(recipe.utility, "learned");
+  EXPECT_EQ(recipe.default_hours, 4);
   ASSERT_EQ(recipe.rounds.size(), 2u);
   EXPECT_EQ(recipe.rounds[0].samples.at(0).worlds(),
             (std::vector<std::string>{"mine:1-10", "depot:1-10"}));
@@ -81,6 +82,7 @@ TEST_F(RecipeFile, WhatIsWrongIsNamed) {
   const std::tuple<const char*, const char*, const char*> cases[] = {
       {"hours: 4", "hours: 0", "expected above 0 h"},
       {"hours: 4", "hour: 4", "hours"},
+      {"hours: 4", "hours: 4\ndefault_hours: 5", "at most `hours`"},
       {"seeds: [1, 10]", "seeds: [10, 1]", "the first and the last seed"},
       {"seeds: [1, 10]", "seeds: [1.5, 10]", "whole numbers"},
       {"explorer: oracle", "explorer: itself", "there is no model yet"},
@@ -180,6 +182,7 @@ TEST(ShippedModels, KnowNoWorldOfTheFigures) {
     EXPECT_TRUE(figures.contains(world)) << world;
 
   const TrainingRecipe recipe = read_recipe(kConfigs / "train/learned.yaml");
+  EXPECT_EQ(recipe.default_hours, 1) << "the readme says how long it takes";
   Worlds of_recipe;
   const auto add = [&](const RecipeSamples& samples) {
     for (const std::string& scene : samples.scenes)
