@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <thread>
 
 #include "framework/core/random.h"
@@ -148,6 +149,9 @@ TEST_F(SlowItems, AFullDiskIsSaidAndGoesOnWhenThereIsRoom) {
   fs::create_directories(folder_ / "disk");
   if (::geteuid() != 0 || shell("mount -t tmpfs -o size=120k none disk").status != 0)
     GTEST_SKIP() << "a small disk cannot be mounted here; run as root";
+  // Also if an assertion ends the test.
+  const auto unmount = [this](void*) { shell("umount disk"); };
+  const std::unique_ptr<void, decltype(unmount)> mounted(this, unmount);
   ASSERT_EQ(shell(work(1, "whole")).status, 0);
   const Finished full = shell(work(2, "disk/some"));
   EXPECT_EQ(full.status, 2);
@@ -157,7 +161,6 @@ TEST_F(SlowItems, AFullDiskIsSaidAndGoesOnWhenThereIsRoom) {
   const Finished more = shell(work(2, "disk/some"));
   EXPECT_EQ(more.status, 0) << more.err;
   EXPECT_EQ(bytes("disk/some"), bytes("whole"));
-  shell("umount disk");
 }
 
 // The C library chooses other code for `exp` and `sin` where the processor has no FMA and AVX2.
