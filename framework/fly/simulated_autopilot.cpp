@@ -23,7 +23,6 @@ constexpr double kPilotArms = 1, kPilotSwitches = 2;  // s after setpoints come
 constexpr double kModeStream = 0.5;                   // s of setpoints that the mode needs
 constexpr double kBrake = 3;                          // m/s^2, of the modes that it flies itself
 constexpr double kSink = 0.7;                         // m/s, landing
-constexpr double kAskAgain = 0.5;                     // s, for an item of the fence
 constexpr double kQuiet = 2;  // s without a packet: nobody is there any more
 constexpr double kE7 = 1e7;
 constexpr double kGroundAboveSea = 400;  // m, of an origin that does not tell it
@@ -82,17 +81,6 @@ std::optional<Setpoint> setpoint_of(const Target& target, double yaw) {
   return setpoint;
 }
 
-bool inside_fence(const MissionFence& fence, const Eigen::Vector2d& p) {
-  if (fence.corners.empty()) return (p - fence.center).norm() < fence.radius;
-  bool in = false;
-  const auto& c = fence.corners;
-  for (std::size_t i = 0, j = c.size() - 1; i < c.size(); j = i++)
-    if ((c[i].y() > p.y()) != (c[j].y() > p.y()) &&
-        p.x() < (c[j].x() - c[i].x()) * (p.y() - c[i].y()) / (c[j].y() - c[i].y()) + c[i].x())
-      in = !in;
-  return in;
-}
-
 }  // namespace
 
 SimulatedAutopilot::SimulatedAutopilot(const LiveFlight& flight, const AutopilotOptions& options)
@@ -105,7 +93,8 @@ SimulatedAutopilot::SimulatedAutopilot(const LiveFlight& flight, const Autopilot
             flight.trajectory().samples.front().yaw),
       audit_(flight.vehicle),
       incoming_(options_.faults, options.seed),
-      outgoing_(options_.faults, options.seed + 1) {
+      outgoing_(options_.faults, options.seed + 1),
+      fence_(earth_, earth_.at(home_).height, options_.faults.refuse_fence) {
   reference_ = body_.setpoint();
 }
 
@@ -294,70 +283,6 @@ void SimulatedAutopilot::turn_gimbal(double pitch_deg, double yaw_deg) {
   gimbal_yaw_deg_ = yaw_deg;
 }
 
-void SimulatedAutopilot::acknowledge_mission(std::uint8_t result) {
-  fence_open_ = false;
-  answers_.push_back(Message<kMissionAck>()
-                         .set<"target_system">(sender_)
-                         .set<"target_component">(sender_component_)
-                         .set<"type">(result)
-                         .set<"mission_type">(kFenceMission)
-                         .packet());
-}
-
-// Polygons are runs of items that state how many corners theirs has.
-void SimulatedAutopilot::finish_fence() {
-  std::vector<MissionFence> fences;
-  for (std::size_t i = 0; i < fence_items_.size();) {
-    const auto& first = fence_items_[i];
-    const std::uint16_t command = first.get<"command">();
-    const auto place = [&](const Message<kMissionItemInt>& item) -> Eigen::Vector2d {
-      const double height = earth_.at(home_).height;
-      return earth_.local({item.get<"x">() / kE7, item.get<"y">() / kE7, height}).head<2>();
-    };
-    MissionFence fence;
-    fence.inclusion = command == kFenceInclusion || command == kCircleInclusion;
-    if (command == kCircleInclusion || command == kCircleExclusion) {
-      fence.center = place(first);
-      fence.radius = first.get<"param1">();
-      ++i;
-    } else {
-      const auto corners = static_cast<std::size_t>(first.get<"param1">());
-      const bool polygon = command == kFenceInclusion || command == kFenceExclusion;
-      if (!polygon || corners < 3 || i + corners > fence_items_.size())
-        return acknowledge_mission(kMissionError);
-      for (std::size_t k = 0; k < corners; ++k, ++i) {
-        if (fence_items_[i].get<"command">() != command) return acknowledge_mission(kMissionError);
-        fence.corners.push_back(place(fence_items_[i]));
-      }
-    }
-    fences.push_back(fence);
-  }
-  fence_ = fences;
-  acknowledge_mission(kMissionAccepted);
-}
-
-void SimulatedAutopilot::take_mission(const Packet& packet, double now) {
-  if (packet.message == kMissionCount) {
-    const Message<kMissionCount> count(packet);
-    if (count.get<"mission_type">() != kFenceMission) return;
-    if (options_.faults.refuse_fence) return acknowledge_mission(kMissionDenied);
-    fence_count_ = count.get<"count">();
-    fence_next_ = 0;
-    fence_sender_ = sender_, fence_component_ = sender_component_;
-    fence_items_.clear();
-    fence_open_ = true;
-    fence_asked_ = -1e9;
-    return;
-  }
-  const Message<kMissionItemInt> item(packet);
-  if (!fence_open_ || item.get<"mission_type">() != kFenceMission) return;
-  if (item.get<"seq">() != fence_next_) return;
-  fence_items_.push_back(item);
-  ++fence_next_;
-  fence_asked_ = now - 2 * kAskAgain;
-  if (fence_next_ == fence_count_) finish_fence();
-}
-
 // Packets for all are for us; those for others are left out.
 bool SimulatedAutopilot::is_for_us(const Packet& packet) const {
   const auto named = [](const auto& message) {
@@ -400,7 +325,8 @@ void SimulatedAutopilot::take(const Packet& packet, double now) {
       return take_global(packet, now);
     case kMissionCount:
     case kMissionItemInt:
-      return take_mission(packet, now);
+      if (auto answer = fence_.receive(packet, now)) answers_.push_back(std::move(*answer));
+      return;
     case kCommandLong: {
       const Message<kCommandLong> m(packet);
       return take_command(m.get<"command">(),
@@ -498,12 +424,7 @@ void SimulatedAutopilot::fly_period(double now) {
   if (!armed_) return;  // it stands
   constexpr int kSteps = static_cast<int>(kPeriod / SimulatedBody::kStep + 0.5);
   for (int i = 0; i < kSteps; ++i) body_.advance();
-  watch_fence();
-}
-
-void SimulatedAutopilot::watch_fence() {
-  for (const MissionFence& fence : fence_)
-    if (inside_fence(fence, body_.state().position.head<2>()) != fence.inclusion) ++breaches_;
+  fence_.watch(body_.state().position.head<2>());
 }
 
 void SimulatedAutopilot::telemetry(double now, Packets& packets) {
@@ -586,15 +507,7 @@ std::vector<std::string> SimulatedAutopilot::step(double now) {
   packets.swap(answers_);
   telemetry(now, packets);
   if (now - slow_at_ >= 1) slow_telemetry(now, packets), slow_at_ = now;
-  if (fence_open_ && now - fence_asked_ > kAskAgain) {
-    fence_asked_ = now;
-    packets.push_back(Message<kMissionRequestInt>()
-                          .set<"target_system">(fence_sender_)
-                          .set<"target_component">(fence_component_)
-                          .set<"seq">(static_cast<std::uint16_t>(fence_next_))
-                          .set<"mission_type">(kFenceMission)
-                          .packet());
-  }
+  if (auto request = fence_.step(now)) packets.push_back(std::move(*request));
   for (Packet& packet : packets) {
     packet.system = kSystem, packet.component = kAutopilotComponent;
     packet.sequence = sequence_++;
@@ -617,9 +530,9 @@ Value SimulatedAutopilot::to_value() const {
   value.set("failsafe", failsafe_);
   value.set("armed", armed_);
   value.set("arm_requests", arm_requests_);
-  value.set("fence_items", static_cast<std::int64_t>(fence_items_.size()));
-  value.set("fences", static_cast<std::int64_t>(fence_.size()));
-  value.set("fence_breaches", static_cast<std::int64_t>(breaches_));
+  value.set("fence_items", static_cast<std::int64_t>(fence_.items()));
+  value.set("fences", static_cast<std::int64_t>(fence_.fences().size()));
+  value.set("fence_breaches", static_cast<std::int64_t>(fence_.breaches()));
   value.set("gimbal_messages", gimbal_messages_);
   value.set("gimbal_pitch_deg", gimbal_pitch_deg_);
   value.set("gimbal_yaw_deg", gimbal_yaw_deg_);

@@ -17,11 +17,11 @@
 #include <vector>
 
 #include "framework/export/earth_frame.h"
-#include "framework/export/mission_fences.h"
 #include "framework/fly/link_faults.h"
 #include "framework/fly/live_flight.h"
 #include "framework/fly/setpoint_audit.h"
 #include "framework/fly/simulated_body.h"
+#include "framework/fly/simulated_fence.h"
 #include "framework/mavlink/message.h"
 #include "framework/mavlink/packet_parser.h"
 
@@ -56,7 +56,7 @@ class SimulatedAutopilot {
   const BodyState& state() const { return body_.state(); }
   std::string mode_name() const;
   int arm_requests() const { return arm_requests_; }
-  const std::vector<MissionFence>& fence() const { return fence_; }
+  const std::vector<MissionFence>& fence() const { return fence_.fences(); }
   // Setpoints, fence, breaches of it, failsafe, mode, place.
   Value to_value() const;
 
@@ -74,18 +74,14 @@ class SimulatedAutopilot {
   void take_command(std::uint16_t command, const std::array<double, 3>& params, double now);
   void turn_gimbal(double pitch_deg, double yaw_deg);
   std::uint8_t answer_gimbal(std::uint16_t command, const std::array<double, 3>& params);
-  void take_mission(const mavlink::Packet& packet, double now);
   std::uint8_t answer_mode(const std::array<double, 3>& params, double now);
   void acknowledge(std::uint16_t command, std::uint8_t result);
-  void acknowledge_mission(std::uint8_t result);
-  void finish_fence();
   void send_requested(std::uint32_t message);
   void play_pilot(double now);
   void play_faults(double now);
   void change(Mode mode, double now);
   void follow_modes(double now);
   void fly_period(double now);
-  void watch_fence();
   void telemetry(double now, Packets& packets);
   void slow_telemetry(double now, Packets& packets);
   std::uint32_t custom_mode() const;
@@ -115,13 +111,7 @@ class SimulatedAutopilot {
   int gimbal_asked_ = 0;
   double gimbal_pitch_deg_ = 0, gimbal_yaw_deg_ = 0;  // yaw: from north, clockwise
   std::uint8_t sender_ = 0, sender_component_ = 0;    // of the last packet
-  std::size_t fence_count_ = 0, fence_next_ = 0;
-  double fence_asked_ = -1e9;
-  std::uint8_t fence_sender_ = 0, fence_component_ = 0;
-  bool fence_open_ = false;
-  std::vector<mavlink::Message<mavlink::kMissionItemInt>> fence_items_;
-  std::vector<MissionFence> fence_;
-  std::uint64_t breaches_ = 0;
+  SimulatedFence fence_;
 };
 
 }  // namespace lapwing

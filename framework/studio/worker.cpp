@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "framework/studio/worker.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
@@ -15,12 +13,10 @@
 
 #include "framework/config/read_note.h"
 #include "framework/core/json.h"
-#include "framework/export/episode_file.h"
 #include "framework/mission/environment_source.h"
 #include "framework/studio/file_look.h"
-#include "framework/studio/plan_message.h"
+#include "framework/studio/worker_answers.h"
 #include "framework/studio/worker_errands.h"
-#include "framework/studio/worker_link.h"
 #include "framework/studio/worker_looks.h"
 #include "framework/studio/worker_progress.h"
 #include "framework/trajectory/interpolate.h"
@@ -37,13 +33,6 @@ constexpr std::size_t kMostDragged = 800, kDraggedStages = 600;
 
 // Missions whose plans a page may still want a picture of: the last, and those that undo comes to.
 constexpr std::size_t kMostKept = 4;
-
-std::string all_failures(const Certificate& certificate) {
-  std::string all;
-  for (const Check& check : certificate.failures())
-    all += (all.empty() ? "" : "; ") + to_line(check);
-  return all;
-}
 
 // m between two flights: beyond the first they are two to who looks at them, up to the second the
 // solver had better begin at its own point, which has multipliers.
@@ -70,8 +59,9 @@ class StudioWorker {
         errands_(script, settings_, std::move(program)),
         editor_(
             script, settings_, [this](const EditedPlan& edited) { hear(edited); }, judge_),
-        looks_([this](Frame frame, std::int64_t serial) { send(std::move(frame), serial); },
-               settings.threads) {}
+        looks_(
+            [this](Frame frame, std::int64_t serial) { answers_.send(std::move(frame), serial); },
+            settings.threads) {}
 
   void run() {
     std::thread reader([this] { read(); });
@@ -129,7 +119,7 @@ class StudioWorker {
     Frame frame = std::move(*solve_);
     solve_.reset();
     // With the lock: from here on `take` ends this one.
-    serial_ = frame.header.at("serial").as_integer();
+    answers_.begin_solve(frame.header.at("serial").as_integer());
     whole_ = std::make_shared<CancellationToken>();
     if (kind_ == "film") edit(frame);
     return frame;
@@ -153,7 +143,7 @@ class StudioWorker {
       else if (what == "begin_at")
         begin_at(frame);
       else
-        send(errands_.answer(frame), frame.header.at("serial").as_integer());
+        answers_.send(errands_.answer(frame), frame.header.at("serial").as_integer());
     } catch (const Cancelled&) {
     } catch (const Error& error) {
       failed(frame, error.what());
@@ -162,42 +152,21 @@ class StudioWorker {
 
   void failed(const Frame& frame, const std::string& why) {
     const std::int64_t serial = frame.header.at("serial").as_integer();
-    if (frame.header.at("do").as_text() == "solve") return refuse(serial, why);
+    if (frame.header.at("do").as_text() == "solve") return answers_.refuse(serial, why);
     Frame answer;
     answer.header.set("said", frame.header.at("do") == Value("check") ? "refused" : "failed");
     answer.header.set("why", as_utf8(why));
     answer.header.set("line", line_in(why, script_));
     answer.header.set("files", errands_.script_files());
-    send(std::move(answer), serial);
+    answers_.send(std::move(answer), serial);
   }
 
   // What a page sees again without a solve.
   void begin_at(const Frame& frame) {
     drawn_last_.reset();
-    told_world_.clear();
+    answers_.forget_world();
     if (!frame.parts.empty())
       editor_.begin_at(plan_from_value(from_json(frame.parts.front(), "plan")).trajectory);
-  }
-
-  void refuse(std::int64_t serial, const std::string& why) {
-    Frame answer;
-    answer.header.set("said", "answer");
-    answer.header.set("grade", to_string(AnswerGrade::refused));
-    answer.header.set("message", as_utf8(why));
-    set_reads(answer);
-    send(std::move(answer), serial);
-  }
-
-  // The data files that the mission has read, also for graphs that are kept: a plan on one of those
-  // does not read them again.
-  void set_reads(Frame& answer) const {
-    answer.header.set("reads", Value(Value::List(reads_.begin(), reads_.end())));
-  }
-
-  void send(Frame answer, std::int64_t serial) {
-    answer.header.set("serial", serial);
-    const std::lock_guard lock(sending_);
-    if (!write_frame(kWorkerOutput, answer)) ::_exit(0);  // nobody is left to tell
   }
 
   void solve(const Frame& frame) {
@@ -205,7 +174,7 @@ class StudioWorker {
     const bool settled = frame.header.at("settled").as_boolean();
     const std::string text = to_json(layer, -1);
     const bool drawn = drawn_last_ && drawn_layer_ == text;
-    began_ = Clock::now();
+    answers_.begin_clock();
     last_step_ = {};
     refused_.reset();
     if (kind_.empty()) {  // of the first one
@@ -253,10 +222,7 @@ class StudioWorker {
     }
     if (whole_->cancelled()) return;
     const bool other_views = estimate.as_map().empty();
-    Frame frame;
-    frame.header.set("said", "estimate");
-    frame.header.set("estimate", std::move(estimate));
-    send(std::move(frame), serial_);
+    answers_.tell_estimate(std::move(estimate));
     if (other_views && !drawn) draw_first_flight(layer);
   }
 
@@ -274,11 +240,7 @@ class StudioWorker {
   }
 
   void tell_first_flight(const Value& told) {
-    if (whole_->cancelled()) return;
-    Frame frame;
-    frame.header.set("said", "first_flight");
-    frame.parts.push_back(to_json(told, -1));
-    send(std::move(frame), serial_);
+    if (!whole_->cancelled()) answers_.tell_first_flight(told);
   }
 
   // As `lapwing run` does: what is settled, and what is no problem by itself (times that are
@@ -291,11 +253,11 @@ class StudioWorker {
     });
     MissionSettings settings = settings_;
     settings.cancellation = whole_.get();
-    WorkerProgress progress([this](Frame told) { send(std::move(told), serial_); });
+    WorkerProgress progress([this](Frame told) { answers_.send(std::move(told)); });
     settings.progress = &progress;
     settings.record_steps = true;
     settings.observe_image = [this](const TakenImage& image) {
-      tell_image(image);
+      answers_.tell_image(image);
       wait_while_paused();
     };
     if (kind_ == "explore")
@@ -354,13 +316,6 @@ class StudioWorker {
     tell(edited);
   }
 
-  void tell_image(const TakenImage& image) {
-    Frame frame;
-    frame.header.set("said", "image");
-    frame.parts = {image_message(image), sights_bytes({image.sight})};
-    send(std::move(frame), serial_);
-  }
-
   void wait_while_paused() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return ended_ || whole_->cancelled() || !paused_ || steps_ > 0; });
@@ -384,7 +339,7 @@ class StudioWorker {
   void judge_tours(MissionResult& result) {
     std::string notes;
     for (const std::string& note : result.notes) notes += (notes.empty() ? "" : "; ") + note;
-    tell_tours(result, nullptr, AnswerGrade::converged, notes);
+    answers_.tell_tours(result, nullptr, AnswerGrade::converged, notes);
     const FleetVerdict verdict = judge_fleet_(result, *whole_);
     if (whole_->cancelled()) return;
     std::string failures = all_failures(verdict.all);
@@ -392,52 +347,9 @@ class StudioWorker {
       if (const std::string own = all_failures(verdict.tours[t]); !own.empty())
         failures += (failures.empty() ? "" : "; ") + name_of_tour(result.fleet->document.tours[t]) +
                     ": " + own;
-    tell_tours(result, &verdict, failures.empty() ? AnswerGrade::certified : AnswerGrade::rejected,
-               failures.empty() ? notes : failures);
-  }
-
-  void tell_tours(const MissionResult& result, const FleetVerdict* verdict, AnswerGrade grade,
-                  const std::string& message) {
-    const FleetResult& fleet = *result.fleet;
-    PlannedOn on{result.scan.get(), nullptr, {}};
-    for (const MissionResult& tour : fleet.tours) on.tours.push_back(&tour.plan);
-    tell_world(fleet.tours.front().plan, result.obstacle_folder, on);
-    Frame frame = answer_frame(grade, message, result.obstacle_folder);
-    if (verdict) set_reads(frame);
-    Value& tours = frame.header.set("tours", Value::list());
-    frame.parts = {"", verdict ? certificate_message(verdict->all) : "", ""};
-    for (std::size_t t = 0; t < fleet.tours.size(); ++t) {
-      const Plan& plan = fleet.tours[t].plan;
-      const FleetTour& about = fleet.document.tours[t];
-      Value one = Value::map();
-      one.set("name", as_utf8(name_of_tour(about)));
-      one.set("drone", as_utf8(about.drone));
-      one.set("battery", std::int64_t{about.battery});
-      one.set("start", about.start);
-      tours.push_back(std::move(one));
-      std::string drawn = plan_message(plan, fleet.tours[t].report, false);
-      std::string document = verdict ? verdict->texts[t] : plan_text(plan);
-      if (t == 0) {
-        frame.parts[0] = std::move(drawn);
-        frame.parts[2] = std::move(document);
-        drawn = document = "";
-      }
-      frame.parts.push_back(std::move(drawn));
-      frame.parts.push_back(verdict ? certificate_message(verdict->tours[t]) : "");
-      frame.parts.push_back(std::move(document));
-    }
-    send(std::move(frame), serial_);
-  }
-
-  Frame answer_frame(AnswerGrade grade, const std::string& message,
-                     const std::filesystem::path& folder) const {
-    Frame frame;
-    frame.header.set("said", "answer");
-    frame.header.set("grade", to_string(grade));
-    frame.header.set("message", as_utf8(message));
-    frame.header.set("folder", folder.string());
-    frame.header.set("seconds", std::chrono::duration<double>(Clock::now() - began_).count());
-    return frame;
+    answers_.tell_tours(result, &verdict,
+                        failures.empty() ? AnswerGrade::certified : AnswerGrade::rejected,
+                        failures.empty() ? notes : failures);
   }
 
   // Its folder has files that its plan names and that planning wrote, and goes with it.
@@ -472,35 +384,9 @@ class StudioWorker {
     tell(*drawn_last_);
   }
 
+  // A page asks for no files of a film.
   void tell(const EditedPlan& edited) {
-    const AnswerGrade grade = edited.answer.grade;
-    tell_world(*edited.plan, edited.folder, {edited.scan.get(), edited.exploration.get(), {}});
-    Frame frame = answer_frame(grade, edited.answer.message,
-                               kind_ == "film" ? std::filesystem::path() : edited.folder);
-    const bool ended = grade != AnswerGrade::step;
-    if (edited.certificate) set_reads(frame);
-    frame.parts.push_back(plan_message(*edited.plan, edited.answer.result.report, ended));
-    Plan whole = *edited.plan;
-    if (edited.certificate) whole.certificate = edited.certificate->to_value();
-    frame.parts.push_back(edited.certificate ? certificate_message(*edited.certificate) : "");
-    frame.parts.push_back(ended ? plan_text(whole) : "");
-    send(std::move(frame), serial_);
-  }
-
-  // Once for every change of it.
-  void tell_world(const Plan& plan, const std::filesystem::path& folder, const PlannedOn& on) {
-    WorldMessage world = world_message(plan, folder, on, drawn_);
-    if (world.text == told_world_) return;
-    told_world_ = world.text;
-    Frame frame;
-    frame.header.set("said", "world");
-    Value& names = frame.header.set("blobs", Value::list());
-    frame.parts.push_back(world.text);
-    for (auto& [name, bytes] : world.blobs) {
-      names.push_back(name);
-      frame.parts.push_back(std::move(bytes));
-    }
-    send(std::move(frame), serial_);
+    answers_.tell(edited, kind_ == "film" ? std::filesystem::path() : edited.folder);
   }
 
   std::filesystem::path script_;
@@ -510,14 +396,12 @@ class StudioWorker {
   WorkerErrands errands_;
   MissionEditor editor_;
   std::string kind_;  // of the mission, once it is known
-  Clock::time_point began_, last_step_;
+  Clock::time_point last_step_;
   std::optional<std::string> refused_;
   std::optional<EditedPlan> drawn_last_;  // as it converged, from the point before; of this layer:
   std::string drawn_layer_;
   double dragged_step_ = 0;  // s between stages while a long film is dragged; 0: as the film says
-  DrawnSurfaces drawn_;
   std::deque<std::shared_ptr<Mission>> planned_;  // of other kinds than films, the newest last
-  std::string told_world_;
   std::shared_ptr<ScanMemory> scan_memory_ = std::make_shared<ScanMemory>();
   std::map<std::string, std::string> memory_reads_;  // for it, and what they looked like
   std::set<std::string> reads_;                      // of the mission planned last
@@ -526,13 +410,12 @@ class StudioWorker {
   std::condition_variable changed_;
   std::deque<Frame> waiting_;
   std::optional<Frame> solve_;
-  std::int64_t serial_ = 0;                   // of the solve under way
-  std::shared_ptr<CancellationToken> whole_;  // likewise, where it is planned whole
+  std::shared_ptr<CancellationToken> whole_;  // of the solve under way, where it is planned whole
   bool paused_ = false;                       // an exploration, after each image
   int steps_ = 0;                             // images that it may take all the same
   bool ended_ = false;
 
-  std::mutex sending_;  // of frames to the server
+  WorkerAnswers answers_{reads_};
   WorkerLooks looks_;
 };
 

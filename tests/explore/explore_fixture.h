@@ -2,6 +2,9 @@
 // A small world to explore: a yard between walls, in voxels of 0.4 m.
 #pragma once
 
+#include <functional>
+
+#include "framework/core/error.h"
 #include "framework/explore/episode.h"
 #include "framework/geometry/mesh_builder.h"
 #include "framework/plugin/registry.h"
@@ -11,6 +14,16 @@ namespace lapwing {
 inline const Registry& plugins() {
   static const Registry registry({LAPWING_BUILD_DIR "/lib/plugins"});
   return registry;
+}
+
+// The message of the error that the call ends in; empty where it ends in none.
+inline std::string refusal(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
 }
 
 inline void add_quad(TriangleMesh& mesh, const Eigen::Vector3d& corner, const Eigen::Vector3d& u,
