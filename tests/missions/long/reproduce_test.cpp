@@ -8,6 +8,7 @@
 #include <set>
 
 #include "framework/core/json.h"
+#include "framework/core/markup.h"
 #include "framework/export/report_value.h"
 #include "framework/study/reproduction.h"
 #include "tests/missions/flown_film.h"
@@ -239,9 +240,9 @@ TEST_F(Reproduced, FiguresShowTheirPictures) {
     const Value made = table(figure);
     const std::string page = read_file(made.at("report").as_text());
     for (const ReproducedPictures& pictures : read_reproduction(kTables, figure).pictures) {
-      EXPECT_NE(page.find(pictures.title), std::string::npos) << figure;
+      EXPECT_NE(page.find(markup_text(pictures.title)), std::string::npos) << figure;
       for (const std::string& block : pictures.blocks)
-        EXPECT_NE(page.find(block), std::string::npos) << figure << ": " << block;
+        EXPECT_NE(page.find(markup_text(block)), std::string::npos) << figure << ": " << block;
     }
   }
   // What the figures say of their runs: figure 3.4 of the largest acceleration, 3.5 of the camera's
