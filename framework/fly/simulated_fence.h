@@ -39,7 +39,7 @@ class SimulatedFence {
   const EarthFrame& earth_;
   double height_;
   bool refuses_;
-  bool open_ = false;                             // items are missing
+  bool open_ = false;                               // items are missing
   std::uint8_t sender_ = 0, sender_component_ = 0;  // of the items
   std::size_t count_ = 0, next_ = 0;
   double asked_at_ = 0;  // s

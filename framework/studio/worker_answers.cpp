@@ -49,8 +49,8 @@ void WorkerAnswers::tell(const EditedPlan& edited, const std::filesystem::path& 
   send(std::move(frame));
 }
 
-void WorkerAnswers::tell_tours(const MissionResult& result, const FleetVerdict* verdict, AnswerGrade grade,
-                const std::string& message) {
+void WorkerAnswers::tell_tours(const MissionResult& result, const FleetVerdict* verdict,
+                               AnswerGrade grade, const std::string& message) {
   const FleetResult& fleet = *result.fleet;
   PlannedOn on{result.scan.get(), nullptr, {}};
   for (const MissionResult& tour : fleet.tours) on.tours.push_back(&tour.plan);
@@ -104,7 +104,7 @@ void WorkerAnswers::tell_estimate(Value estimate) {
 }
 
 Frame WorkerAnswers::answer_frame(AnswerGrade grade, const std::string& message,
-                   const std::filesystem::path& folder) const {
+                                  const std::filesystem::path& folder) const {
   Frame frame;
   frame.header.set("said", "answer");
   frame.header.set("grade", to_string(grade));
@@ -115,7 +115,8 @@ Frame WorkerAnswers::answer_frame(AnswerGrade grade, const std::string& message,
 }
 
 // Once for every change of it.
-void WorkerAnswers::tell_world(const Plan& plan, const std::filesystem::path& folder, const PlannedOn& on) {
+void WorkerAnswers::tell_world(const Plan& plan, const std::filesystem::path& folder,
+                               const PlannedOn& on) {
   WorldMessage world = world_message(plan, folder, on, drawn_);
   if (world.text == told_world_) return;
   told_world_ = world.text;
