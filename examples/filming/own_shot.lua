@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0
 -- A designer's shot from a file of yours:
---   lapwing run examples/filming/own_shot.lua --set input=shot_01.json --data ../shared/data
+--   lapwing run examples/filming/own_shot.lua --set input=shot_01.json --data FOLDER
 -- Keyframes are met within half a metre; all times are stretched as little as that takes.
 local film = require "mission.film"
 

@@ -163,6 +163,11 @@ class Reproducing {
     } catch (const InputError&) {
       release_version();
       throw;
+    } catch (const Cancelled&) {
+      if (!invocation_.quiet)
+        std::cerr << "`lapwing reproduce " << made_.name << "` continues with --resume"
+                  << std::endl;
+      throw;
     }
     std::map<RecordSource, Value::List> records;
     for (const RecordSource& source : record_sources(made_)) records[source] = records_of(source);
@@ -472,8 +477,10 @@ ExitStatus reproduce_table(const ReproduceRequest& asked, const Invocation& invo
         "without mpirun, and use --threads");
   }
   if (asked.table == "list") {
-    if (asked.quick || asked.resume)
-      throw InputError("reproduce list: --quick and --resume are for tables");
+    if (asked.quick || asked.resume || !invocation.out.empty() || !invocation.data.empty() ||
+        invocation.threads > 0)
+      throw InputError(
+          "reproduce list: --quick, --resume, --out, --data and --threads are for tables");
     return list_reproductions(invocation);
   }
   return Reproducing(asked, invocation).run();

@@ -116,7 +116,7 @@ void add_reproduce_command(CLI::App& app, Invocation& invocation, ReproduceReque
   made->add_flag("--quick", asked.quick, "less of it, within five minutes; the caption says what");
   made->add_flag("--resume", asked.resume, "continue an interrupted reproduction");
   add_repeated(*made, "--data", "DIR", invocation.data,
-               "a folder of real meshes; repeatable; default: those of LAPWING_DATA");
+               "a folder with `meshes/` in it; repeatable; default: those of LAPWING_DATA");
   add_text(*made, "-o,--out", "DIR", "folder of all reproductions; default: out/reproduce",
            [&](const std::string& path) { invocation.out = path; });
   add_threads(*made, invocation, "threads to use; default: one per core");

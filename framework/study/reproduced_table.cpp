@@ -292,7 +292,9 @@ ReproducedTable reproduced_table(const Reproduction& made,
 
 void require_records(const Reproduction& made, const std::map<RecordSource, Value::List>& records,
                      bool quick) {
-  Assembly(made, records).require_records(quick);
+  const Assembly assembly(made, records);
+  assembly.require_places();  // first: a mistyped place is no reason to name values
+  assembly.require_records(quick);
 }
 
 }  // namespace lapwing

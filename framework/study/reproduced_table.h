@@ -55,8 +55,8 @@ ReproducedTable reproduced_table(const Reproduction& made,
                                  const std::map<RecordSource, Value::List>& records,
                                  std::string caption);
 
-// InputError for a row or a column that no record fits: its `where` has a mistake. The quick
-// version leaves out rows and columns that say so.
+// InputError for a place that no record of the study has, and for a row or a column that no record
+// fits: its `where` has a mistake. The quick version leaves out rows and columns that say so.
 void require_records(const Reproduction& made, const std::map<RecordSource, Value::List>& records,
                      bool quick);
 

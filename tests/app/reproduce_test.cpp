@@ -254,7 +254,12 @@ TEST_F(Reproduce, AMistakeInOneTableLeavesTheOthers) {
   EXPECT_EQ(listed.status, 2);
   EXPECT_NE(listed.out.find("Tours of four nodes"), std::string::npos) << listed.out;
   EXPECT_NE(listed.err.find("9.2.yaml:3"), std::string::npos) << listed.err;
-  EXPECT_EQ(reproduce({"list", "--quick"}).status, 2);
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"--quick"}, {"-o", "other"}, {"--threads", "1"}}) {
+    std::vector<std::string> asked{"list"};
+    asked.insert(asked.end(), words.begin(), words.end());
+    EXPECT_EQ(reproduce(asked).status, 2) << words.front();
+  }
   EXPECT_EQ(reproduce({"9.1", "--data", "data"}).status, 0);
   EXPECT_NE(reproduce({"fig_9.1"}).err.find("did you mean '9.1'?"), std::string::npos);
   // Before any study is begun.
@@ -295,6 +300,14 @@ TEST_F(Reproduce, AMistakeInOneTableLeavesTheOthers) {
                          "are \"greedy\", \"local_search\""),
             std::string::npos)
       << row.err;
+  text = kTable;
+  text.replace(text.find("{solver: greedy}, thesis"), 16, "{solvr: greedy}");
+  write_table(text);
+  const Finished key = reproduce({"9.1", "--data", "data", "-o", "third", "--resume"});
+  EXPECT_EQ(key.status, 2);
+  EXPECT_NE(key.err.find("no record of study 'nodes' has 'solvr'; the first has "),
+            std::string::npos)
+      << key.err;
   write_table(kTable);
   EXPECT_EQ(reproduce({"9.1", "--data", "data", "-o", "third", "--resume"}).status, 0)
       << "what was done is not lost";

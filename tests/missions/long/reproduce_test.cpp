@@ -9,6 +9,7 @@
 
 #include "framework/core/json.h"
 #include "framework/core/markup.h"
+#include "framework/core/png.h"
 #include "framework/export/report_value.h"
 #include "framework/study/reproduction.h"
 #include "tests/missions/flown_film.h"
@@ -100,17 +101,32 @@ class Reproduced : public Filming {
     }
   }
 
-  // Of the first curve of a chart in the report of a study's run.
-  double largest(const std::string& figure, const std::string& study, const std::string& title) {
+  // The report of a study's run.
+  Report report_of(const std::string& figure, const std::string& study) const {
     const fs::path file = folder_ / (figure + "_quick") / study / "report.json";
+    return report_from_value(from_json(read_file(file), file.string()));
+  }
+
+  // Of the first curve of a chart in it.
+  double largest(const std::string& figure, const std::string& study, const std::string& title) {
     double most = 0;
-    for (const Section& section :
-         report_from_value(from_json(read_file(file), file.string())).sections)
+    for (const Section& section : report_of(figure, study).sections)
       for (const Block& block : section.blocks)
         if (const Chart* chart = std::get_if<Chart>(&block);
             chart && chart->title.starts_with(title))
           for (const double y : chart->series.at(0).y) most = std::max(most, std::abs(y));
     return most;
+  }
+
+  // Points of the lines of this name in the first plan view of a section.
+  static std::size_t drawn_points(const Report& report, const std::string& section,
+                                  const std::string& line) {
+    for (const Section& one : report.sections)
+      for (const Block& block : one.blocks)
+        if (const PathView* view = std::get_if<PathView>(&block); view && one.title == section)
+          for (const Polyline& drawn : view->drawing.lines)
+            if (drawn.name == line) return drawn.points.size();
+    return 0;
   }
 
   std::map<std::pair<std::string, std::string>, double> expect_filled(const std::string& name,
@@ -257,6 +273,36 @@ TEST_F(Reproduced, FiguresShowTheirPictures) {
   const auto errors = cells(table("figure_3.8"));
   EXPECT_LT(errors.at({"legible (C)", "largest error"}), 0.02);
   EXPECT_GT(errors.at({"too smooth (B)", "largest error"}), 0.2);
+  // Figures 4.4, 4.6, 4.7 and 4.9 are of one run. No picture of a map or of rays is blank.
+  const Report scan = report_of("figure_4.4", "church");
+  EXPECT_GT(drawn_points(scan, "Candidates", "motions"), 300u);
+  EXPECT_GT(drawn_points(scan, "Tour", "planned views"), 20u);
+  EXPECT_GT(drawn_points(scan, "Tour", "matching views"), 0u);
+  std::size_t images = 0;
+  for (const Section& section : scan.sections)
+    if (section.title == "Knowledge of the first flight" || section.title == "One view")
+      for (const Block& block : section.blocks)
+        if (const Image* image = std::get_if<Image>(&block)) {
+          EXPECT_GT(image->png.size(), 10'000u) << image->caption;
+          ++images;
+        }
+  EXPECT_EQ(images, 5u);
+  // The scales of a grid show different things, none of them nothing.
+  const std::size_t blank = encode_png({128, 128, std::vector<std::uint8_t>(128 * 128 * 3)}).size();
+  std::size_t strips = 0;
+  for (const Section& section : report_of("figure_5.4", "suburb").sections)
+    for (const Block& block : section.blocks)
+      if (const FilmStrip* strip = std::get_if<FilmStrip>(&block);
+          strip && section.title.starts_with("What a learned utility is shown")) {
+        std::set<std::string> scales;
+        for (const FilmFrame& frame : strip->frames) {
+          EXPECT_GT(frame.png.size(), blank) << strip->title;
+          scales.insert(frame.png);
+        }
+        EXPECT_EQ(scales.size(), strip->frames.size()) << strip->title;
+        ++strips;
+      }
+  EXPECT_EQ(strips, 8u);  // occupancy and certainty in four figures
 }
 
 TEST_F(Reproduced, RealMeshes) {
