@@ -236,7 +236,8 @@ TEST_F(Reproductions, ARowOrAColumnThatNoRecordFitsIsAMistake) {
                       {"method": "b", "seed": 1, "with_first": {"f": 0.4}}])",
                                        "rows")
                                  .as_list();
-    const Value::List times = from_json(R"([{"method": "a", "seconds": 3}])", "times").as_list();
+    const Value::List times =
+        from_json(R"([{"method": "a", "seed": 1, "seconds": 3}])", "times").as_list();
     try {
       require_records(read_reproduction(folder_, "9.2"),
                       {{{"hut", ""}, rows}, {{"hut", "times"}, times}}, false);
@@ -253,6 +254,9 @@ TEST_F(Reproductions, ARowOrAColumnThatNoRecordFitsIsAMistake) {
             "table 9.2, column 'F': study 'hut' has no record with seed 3; there are 1");
   EXPECT_EQ(refused("where: {method: b}", "where: {method: b, seed: 2}"),
             "table 9.2, row 'B': study 'hut' has no record with seed 2; there are 1");
+  EXPECT_EQ(refused("where: {method: b}", "where: {metod: b}"),
+            "table 9.2: no record of study 'hut' has 'metod'; the first has method, seed, "
+            "with_first");
 }
 
 TEST_F(Reproductions, MeansBringTheirOwnIntervals) {
