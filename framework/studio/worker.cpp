@@ -34,6 +34,14 @@ constexpr std::size_t kMostDragged = 800, kDraggedStages = 600;
 // Missions whose plans a page may still want a picture of: the last, and those that undo comes to.
 constexpr std::size_t kMostKept = 4;
 
+// The reasons of all checks that fail, in one line; empty where none does.
+std::string all_failures(const Certificate& certificate) {
+  std::string all;
+  for (const Check& check : certificate.failures())
+    all += (all.empty() ? "" : "; ") + to_line(check);
+  return all;
+}
+
 // m between two flights: beyond the first they are two to who looks at them, up to the second the
 // solver had better begin at its own point, which has multipliers.
 constexpr double kAnotherWay = 0.5, kSameWay = 0.05;

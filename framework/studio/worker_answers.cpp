@@ -9,13 +9,6 @@
 
 namespace lapwing {
 
-std::string all_failures(const Certificate& certificate) {
-  std::string all;
-  for (const Check& check : certificate.failures())
-    all += (all.empty() ? "" : "; ") + to_line(check);
-  return all;
-}
-
 void WorkerAnswers::send(Frame answer, std::int64_t serial) {
   answer.header.set("serial", serial);
   const std::lock_guard lock(sending_);

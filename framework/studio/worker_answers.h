@@ -17,9 +17,6 @@
 
 namespace lapwing {
 
-// The reasons of all checks that fail, in one line; empty where none does.
-std::string all_failures(const Certificate& certificate);
-
 class WorkerAnswers {
  public:
   // Keeps a reference: `reads` are the data files that the mission has read, also for graphs that
