@@ -182,7 +182,6 @@ class StudioWorker {
     const bool settled = frame.header.at("settled").as_boolean();
     const std::string text = to_json(layer, -1);
     const bool drawn = drawn_last_ && drawn_layer_ == text;
-    answers_.begin_clock();
     last_step_ = {};
     refused_.reset();
     if (kind_.empty()) {  // of the first one

@@ -28,9 +28,12 @@ class WorkerAnswers {
   void send(Frame frame, std::int64_t serial);
   void send(Frame frame) { send(std::move(frame), serial_); }
 
-  void begin_solve(std::int64_t serial) { serial_ = serial; }
-  void begin_clock() { began_ = Clock::now(); }  // of the seconds in answers
-  void forget_world() { told_world_.clear(); }   // it is told again
+  // The seconds in answers count from here.
+  void begin_solve(std::int64_t serial) {
+    serial_ = serial;
+    began_ = Clock::now();
+  }
+  void forget_world() { told_world_.clear(); }  // it is told again
 
   void refuse(std::int64_t serial, const std::string& why);
   // `folder`: of the files that the page may ask for; empty where it may not.
