@@ -33,7 +33,8 @@ inline Plan film_plan() {
   return plan;
 }
 
-inline std::string file_of(const char* format, const Plan& plan, const Value& given = Value::map()) {
+inline std::string file_of(const char* format, const Plan& plan,
+                           const Value& given = Value::map()) {
   return exporter_named(format, given)->write(plan);
 }
 
