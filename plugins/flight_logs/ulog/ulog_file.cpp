@@ -320,7 +320,7 @@ class Reading {
     const auto topic = topics_.find(*id);
     if (topic == topics_.end() || !has_size_of(*topic->second.format, body)) return false;
     const std::string_view message = body.substr(2);
-    if (const Field* time = topic->second.format->field("timestamp"))
+    if (const auto time = topic->second.format->number("timestamp"))
       time_ = std::max(time_, 1e-6 * value_of(*time, message));
     listener_.data(topic->second, message);
     return true;

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kLongestMessage = 65535;  // bytes
 constexpr int kDeepest = 16;
 constexpr std::size_t kLongestName = 255;     // of a field with all that it is in
-constexpr std::size_t kMostFields = 1 << 20;  // of all formats together
+constexpr std::size_t kMostFields = 1 << 17;  // of all formats together
 
 struct Known {
   const char* name;
@@ -34,6 +34,12 @@ const Known* known_named(std::string_view name) {
   return found == std::end(kKnown) ? nullptr : found;
 }
 
+std::size_t size_of(NumberType type) {
+  return std::find_if(std::begin(kKnown), std::end(kKnown),
+                      [&](const Known& k) { return k.type == type; })
+      ->size;
+}
+
 [[noreturn]] void refuse(std::string_view definition) {
   throw InputError("the format '" + std::string(definition.substr(0, 60)) +
                    "' is not of the form NAME:TYPE FIELD;TYPE[N] FIELD;...");
@@ -47,36 +53,47 @@ double read(std::string_view bytes, std::size_t at) {
 
 }  // namespace
 
-const Field* Format::field(std::string_view name) const {
-  const auto found = std::find_if(fields.begin(), fields.end(),
-                                  [&](const Field& field) { return field.name == name; });
-  return found == fields.end() ? nullptr : &*found;
+std::optional<Number> Format::number(std::string_view name) const {
+  const std::size_t open = name.ends_with(']') ? name.rfind('[') : name.npos;
+  std::size_t element = 0;
+  bool indexed = open != name.npos;
+  if (indexed) {
+    const char* last = name.data() + name.size() - 1;
+    const auto [after, error] = std::from_chars(name.data() + open + 1, last, element);
+    indexed = error == std::errc{} && after == last;
+  }
+  for (const Field& field : fields) {
+    if (field.count == 0 && field.name == name) return field.first;
+    if (indexed && element < field.count && field.name == name.substr(0, open))
+      return Number{field.first.type, field.first.offset + element * size_of(field.first.type)};
+  }
+  return {};
 }
 
-double value_of(const Field& field, std::string_view bytes) {
-  switch (field.type) {
+double value_of(const Number& number, std::string_view bytes) {
+  switch (number.type) {
     case NumberType::i8:
-      return read<std::int8_t>(bytes, field.offset);
+      return read<std::int8_t>(bytes, number.offset);
     case NumberType::u8:
     case NumberType::boolean:
     case NumberType::character:
-      return read<std::uint8_t>(bytes, field.offset);
+      return read<std::uint8_t>(bytes, number.offset);
     case NumberType::i16:
-      return read<std::int16_t>(bytes, field.offset);
+      return read<std::int16_t>(bytes, number.offset);
     case NumberType::u16:
-      return read<std::uint16_t>(bytes, field.offset);
+      return read<std::uint16_t>(bytes, number.offset);
     case NumberType::i32:
-      return read<std::int32_t>(bytes, field.offset);
+      return read<std::int32_t>(bytes, number.offset);
     case NumberType::u32:
-      return read<std::uint32_t>(bytes, field.offset);
+      return read<std::uint32_t>(bytes, number.offset);
     case NumberType::i64:
-      return read<std::int64_t>(bytes, field.offset);
+      return read<std::int64_t>(bytes, number.offset);
     case NumberType::u64:
-      return read<std::uint64_t>(bytes, field.offset);
+      return read<std::uint64_t>(bytes, number.offset);
     case NumberType::f32:
-      return read<float>(bytes, field.offset);
+      return read<float>(bytes, number.offset);
     case NumberType::f64:
-      return read<double>(bytes, field.offset);
+      return read<double>(bytes, number.offset);
   }
   return NAN;
 }
@@ -121,10 +138,8 @@ const Format& Formats::resolved(const std::string& name) {
     format.fields.pop_back();
   format.size = 0;
   for (const Field& field : format.fields) {
-    const auto size = std::find_if(std::begin(kKnown), std::end(kKnown), [&](const Known& k) {
-                        return k.type == field.type;
-                      })->size;
-    format.size = std::max(format.size, field.offset + size);
+    const std::size_t elements = std::max<std::size_t>(1, field.count);
+    format.size = std::max(format.size, field.first.offset + elements * size_of(field.first.type));
   }
   return resolved_[name] = std::move(format);
 }
@@ -144,16 +159,18 @@ void Formats::append(const std::string& name, const std::string& prefix, int dep
     if (into.size + count * (known ? known->size : 1) > kLongestMessage)
       throw InputError("the format '" + name.substr(0, 60) +
                        "' is longer than the 65535 bytes of a message");
-    for (std::size_t k = 0; k < count; ++k) {
-      std::string one = member.count > 0 ? all + "[" + std::to_string(k) + "]" : all;
+    // An array of formats is laid out element by element.
+    const std::size_t times = known ? 1 : count;
+    for (std::size_t k = 0; k < times; ++k) {
       // A file may name a format that is refused again and again: what was laid out of it counts.
       if (++fields_ > kMostFields)
-        throw InputError("the formats have more than 2^20 fields together");
-      if (!known) {
-        append(member.type, one + ".", depth + 1, into);
+        throw InputError("the formats have more than 2^17 fields together");
+      if (known) {
+        into.fields.push_back({all, {known->type, into.size}, member.count});
+        into.size += count * known->size;
       } else {
-        into.fields.push_back({std::move(one), known->type, into.size});
-        into.size += known->size;
+        append(member.type, all + (member.count > 0 ? "[" + std::to_string(k) + "]." : "."),
+               depth + 1, into);
       }
     }
   }

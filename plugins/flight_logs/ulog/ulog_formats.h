@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,22 +13,28 @@ namespace lapwing::ulog {
 
 enum class NumberType { i8, u8, i16, u16, i32, u32, i64, u64, f32, f64, boolean, character };
 
-struct Field {
-  std::string name;  // "x", "q[2]", "esc[0].rpm"
+struct Number {
   NumberType type = NumberType::u8;
   std::size_t offset = 0;  // bytes from the beginning of the message, its id excluded
 };
 
+// A number, or an array of numbers one behind the other.
+struct Field {
+  std::string name;  // "x", "q", "esc[0].rpm"
+  Number first;
+  std::size_t count = 0;  // of an array; 0: not an array
+};
+
 struct Format {
-  std::vector<Field> fields;  // every element of an array by itself, but for texts
+  std::vector<Field> fields;  // those of a format within it by themselves
   std::size_t size = 0;       // bytes, the padding at the end excluded, which files may leave out
 
-  // Null where there is none.
-  const Field* field(std::string_view name) const;
+  // Of a field ("x", "esc[0].rpm") or of an element of an array ("q[2]").
+  std::optional<Number> number(std::string_view name) const;
 };
 
 // The number as a double; `bytes` is the message without its id and at least `size` long.
-double value_of(const Field& field, std::string_view bytes);
+double value_of(const Number& number, std::string_view bytes);
 
 // Definitions as they come, "name:type a;type[3] b;...", which may name each other.
 class Formats {
@@ -35,8 +42,8 @@ class Formats {
   // InputError for a line of another form. A format that was resolved stays as it is.
   void add(std::string_view definition);
   // Resolved with what it contains. InputError for a format that is not defined, that contains
-  // itself, or that is longer than a message can be (65535 bytes); and once 2^20 fields were laid
-  // out, those of refused formats and of arrays of formats included.
+  // itself, or that is longer than a message can be (65535 bytes); and once 2^17 fields were laid
+  // out, those of refused formats and of arrays of formats included. An array of numbers is one.
   const Format& resolved(const std::string& name);
 
  private:

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -228,7 +229,7 @@ class Mapping {
  private:
   struct Bound {
     const Source* source;
-    std::vector<const Field*> fields;
+    std::vector<std::optional<Number>> numbers;
   };
 
   // Which topics there are, and what of the file is sound.
@@ -276,8 +277,8 @@ class Mapping {
       if (held == held_.end() || given.count(source.quantity)) continue;
       Bound bound{&source, {}};
       for (const char* field : source.fields)
-        bound.fields.push_back(held->second.format->field(field));
-      if (!bound.fields[0]) continue;
+        bound.numbers.push_back(held->second.format->number(field));
+      if (!bound.numbers[0]) continue;
       given.insert(source.quantity);
       bound_.push_back(std::move(bound));
     }
@@ -314,23 +315,23 @@ class Mapping {
   }
 
   static double number(const Topic& topic, const char* name, std::string_view bytes) {
-    const Field* field = topic.format->field(name);
-    return field ? value_of(*field, bytes) : NAN;
+    const auto found = topic.format->number(name);
+    return found ? value_of(*found, bytes) : NAN;
   }
 
   // When the state was, not when it was told.
   static double time_of(const Format& format, std::string_view bytes) {
-    const Field* sampled = format.field("timestamp_sample");
+    const auto sampled = format.number("timestamp_sample");
     const double time = sampled ? value_of(*sampled, bytes) : 0;
     if (time > 0) return 1e-6 * time;
-    const Field* told = format.field("timestamp");
+    const auto told = format.number("timestamp");
     return told ? 1e-6 * value_of(*told, bytes) : NAN;
   }
 
   void take(const Bound& bound, double time, std::string_view bytes) {
     double values[8] = {};
-    for (std::size_t k = 0; k < bound.fields.size(); ++k)
-      values[k] = bound.fields[k] ? value_of(*bound.fields[k], bytes) : NAN;
+    for (std::size_t k = 0; k < bound.numbers.size(); ++k)
+      values[k] = bound.numbers[k] ? value_of(*bound.numbers[k], bytes) : NAN;
     bound.source->take(builder_, time, values);
   }
 
