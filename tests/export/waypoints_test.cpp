@@ -93,11 +93,7 @@ TEST(Waypoints, ACameraThatTurnsHasMoreOfThem) {
   EXPECT_LE(waypoints.size(), 8u);
   EXPECT_NEAR(waypoints[1].camera_yaw, waypoints[1].time * 0.05, 0.02);
   // Who follows a subject that stands still needs none of them.
-  Subject subject;
-  subject.name = "tree";
-  subject.times = {0};
-  subject.positions = {{10, 30, 5}};
-  plan.environment.subjects.push_back(subject);
+  plan.environment.subjects.push_back({.name = "tree", .times = {0}, .positions = {{10, 30, 5}}});
   plan.task.framing.push_back({"tree", {0, 12}});
   for (Sample& s : plan.trajectory.samples)
     s.gimbal_yaw = std::atan2(30.0, 10 - s.position.x()), s.gimbal_yaw_rate = 0;

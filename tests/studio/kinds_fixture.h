@@ -34,6 +34,15 @@ class StudioKinds : public StudioProgram {
       return m.at("type") == Value("picture") || m.at("type") == Value("failed");
     });
   }
+  // A settled exploration is planned anew with so many images. It is paused before its first one,
+  // so that it waits after that one, however slow the page is. Its first image.
+  static Value plan_paused(PageClient& page, std::int64_t steps) {
+    EXPECT_TRUE(page.send_together(to_json(gesture("g", 1, {change("steps", steps)}), -1),
+                                   R"({"type": "pace", "pace": "pause"})"));
+    Value first = page.until_type("image");
+    EXPECT_EQ(first.at("image"), Value(1));
+    return first;
+  }
 };
 
 // A page that asks about the map of one plan; all is compared with the map that a run writes.

@@ -127,24 +127,11 @@ class PageClient {
   const std::string& head() const { return head_; }
   bool send(const Value& message) { return send_text(to_json(message, -1)); }
   bool send_text(const std::string& text, char opcode = 1) {
-    std::string frame(1, static_cast<char>(0x80 | opcode));
-    const std::size_t size = text.size();
-    const auto add = [&](int bytes) {
-      for (int i = bytes - 1; i >= 0; --i) frame += static_cast<char>(size >> (8 * i));
-    };
-    if (size < 126) {
-      frame += static_cast<char>(0x80 | size);
-    } else if (size < 65536) {
-      frame += static_cast<char>(0x80 | 126);
-      add(2);
-    } else {
-      frame += static_cast<char>(0x80 | 127);
-      add(8);
-    }
-    const char mask[4] = {0x12, 0x34, 0x56, 0x78};
-    frame.append(mask, 4);
-    for (std::size_t i = 0; i < size; ++i) frame += static_cast<char>(text[i] ^ mask[i % 4]);
-    return connection_.write(frame);
+    return connection_.write(frame_of(text, opcode));
+  }
+  // One behind the other, with nothing between them.
+  bool send_together(const std::string& first, const std::string& second) {
+    return connection_.write(frame_of(first, 1) + frame_of(second, 1));
   }
 
   // The next message; null where the server closed the connection, or said nothing for so long.
@@ -210,6 +197,27 @@ class PageClient {
   std::string close_reason;
 
  private:
+  static std::string frame_of(const std::string& text, char opcode) {
+    std::string frame(1, static_cast<char>(0x80 | opcode));
+    const std::size_t size = text.size();
+    const auto add = [&](int bytes) {
+      for (int i = bytes - 1; i >= 0; --i) frame += static_cast<char>(size >> (8 * i));
+    };
+    if (size < 126) {
+      frame += static_cast<char>(0x80 | size);
+    } else if (size < 65536) {
+      frame += static_cast<char>(0x80 | 126);
+      add(2);
+    } else {
+      frame += static_cast<char>(0x80 | 127);
+      add(8);
+    }
+    const char mask[4] = {0x12, 0x34, 0x56, 0x78};
+    frame.append(mask, 4);
+    for (std::size_t i = 0; i < size; ++i) frame += static_cast<char>(text[i] ^ mask[i % 4]);
+    return frame;
+  }
+
   Connection connection_;
   std::string head_, buffer_;
   Value told_;

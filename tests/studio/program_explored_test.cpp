@@ -156,13 +156,10 @@ TEST_F(StudioExplored, TheMapOfAnExplorationThatIsBeingPlanned) {
   open({"--set", "steps=12"});
   std::map<int, Value> finished;
   for (int image = 0; image <= 12; ++image) finished[image] = slice("z", 4, image);
-  ASSERT_TRUE(page_->send(gesture("g", 1, {change("steps", 60)})));
-  page_->until_type("image");
-  ASSERT_TRUE(page_->send_text(R"({"type": "pace", "pace": "pause"})"));
-  page_->until_type("pace");
+  plan_paused(*page_, 60);
   for (const int image : {1, 0}) EXPECT_EQ(slice("z", 4, image), finished[image]) << image;
-  EXPECT_THAT(why(R"("type": "slice", "axis": "x", "at": 1, "image": 60)"),
-              HasSubstr("there is no image 60"));
+  EXPECT_THAT(why(R"("type": "slice", "axis": "x", "at": 1, "image": 2)"),
+              HasSubstr("there is no image 2; expected 0 (before the first) to 1"));
   const Value known = voxel({0, 0, 4}, 1);
   ASSERT_TRUE(page_->send_text(R"({"type": "undo", "id": "u", "base": 2})"));
   page_->until_judged(3);

@@ -309,27 +309,29 @@ TEST_F(StudioKinds, AnExplorationIsSteppedThroughAndOpenedFromItsFolder) {
   const auto [world, answer] = told(page);
   const Value images = world.at("exploration").at("images");
   // --set was the first edit.
-  // So many that it is not at its end before a slow page has paused it.
-  ASSERT_TRUE(page.send(gesture("g", 1, {change("steps", 400)})));
-  const Value first = page.until_type("image");
-  ASSERT_TRUE(page.send_text(R"({"type": "pace", "pace": "pause"})"));
-  page.until_type("pace");
+  const Value first = plan_paused(page, 400);
   EXPECT_EQ(first.at("asked"), Value(400));
   EXPECT_EQ(blob(address, first.at("sights")).substr(0, 4), "WLE1");
-  Value last = first;
-  for (Value more = page.receive(std::chrono::milliseconds(1500)); !more.is_null();
-       more = page.receive(std::chrono::milliseconds(1500)))
-    if (more.at("type") == Value("image")) last = more;
-  const std::int64_t waiting = last.at("image").as_integer();
-  EXPECT_LT(waiting, 400);
-  ASSERT_TRUE(page.send_text(R"({"type": "pace", "pace": "step"})"));
-  last = page.until_type("image");
-  EXPECT_EQ(last.at("image"), Value(waiting + 1));
-  // The figures of the finished one, as far as both go.
-  const auto at = static_cast<std::size_t>(last.at("image").as_integer() - 1);
-  if (at < images.as_list().size())
+  // The figures of the finished one.
+  const auto expect_finished = [&](const Value& image) {
+    const auto at = static_cast<std::size_t>(image.at("image").as_integer() - 1);
     for (const char* key : {"time", "value", "observed", "yaw"})
-      EXPECT_EQ(last.at(key), images.as_list()[at].at(key)) << key;
+      EXPECT_EQ(image.at(key), images.as_list().at(at).at(key)) << key;
+  };
+  expect_finished(first);
+  constexpr std::chrono::milliseconds kManyImages{1500};
+  for (Value m = page.receive(kManyImages); !m.is_null(); m = page.receive(kManyImages))
+    EXPECT_NE(m.at("type"), Value("image")) << to_json(m);
+  const auto paced = [&](const std::string& pace) {
+    EXPECT_TRUE(page.send_text(R"({"type": "pace", "pace": ")" + pace + R"("})"));
+    return page.until_type("image");
+  };
+  for (const auto& [pace, next] : {std::pair("step", 2), {"step", 3}, {"run", 4}}) {
+    const Value image = paced(pace);
+    EXPECT_EQ(image.at("image"), Value(next));
+    expect_finished(image);
+  }
+  EXPECT_EQ(page.until_type("image").at("image"), Value(5)) << "it goes on";
   ASSERT_TRUE(page.send_text(R"({"type": "undo", "id": "u", "base": 2})"));
   page.until_judged(3);
   EXPECT_EQ(run({"run", script_.string(), "--set", "steps=6"}), 0) << errors_;

@@ -13,11 +13,7 @@ inline Plan film_plan() {
   plan.mission = "A & B";
   plan.certificate = Certificate{{{.name = "clearance", .worst = 1, .pass = true}}}.to_value();
   plan.trajectory.samples.clear();
-  Subject statue;
-  statue.name = "statue";
-  statue.times = {0};
-  statue.positions = {{0, 0, 1}};
-  plan.environment.subjects.push_back(statue);
+  plan.environment.subjects.push_back({.name = "statue", .times = {0}, .positions = {{0, 0, 1}}});
   plan.task.framing.push_back({"statue", {0, 20}});
   for (int i = 0; i <= 400; ++i) {
     const double t = 0.1 * i, a = std::min(t, 20.0) * M_PI / 20, away = std::max(0.0, t - 20);

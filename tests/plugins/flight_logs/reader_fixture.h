@@ -62,7 +62,7 @@ inline std::filesystem::path shared_log(const std::string& name) {
   for (const std::filesystem::path& root :
        {std::filesystem::path(folder ? folder : ""),
         std::filesystem::path(LAPWING_SOURCE_DIR) / "../shared/data"}) {
-    const std::filesystem::path file = root / "flight_logs" / name;
+    std::filesystem::path file = root / "flight_logs" / name;
     if (std::filesystem::is_regular_file(file)) return file;
   }
   return {};

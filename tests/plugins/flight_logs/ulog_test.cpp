@@ -239,19 +239,24 @@ std::vector<std::string> hostile_formats() {
   for (int k = 0; k < 3000; ++k) {
     const std::string name = "w" + std::to_string(k), rest = std::string(200, 'a') + ";";
     const std::string topic = ulog_topic(static_cast<std::uint16_t>(k), name);
-    wide += ulog_format(name + ":uint8_t[65535] " + rest) + topic;
-    wide_within += ulog_format(name + ":e[65535] " + rest) + topic;
+    wide += ulog_format(name + ":uint8_t[65535] " + rest);
+    wide += topic;
+    wide_within += ulog_format(name + ":e[65535] " + rest);
+    wide_within += topic;
   }
   const std::string self = ulog_head() + ulog_format("a:a b;") + ulog_topic(1, "a");
   // Each is refused at its last field.
   std::string doubled = ulog_head() + ulog_format("d0:uint8_t a;uint8_t b;");
   for (int k = 1; k < 16; ++k) {
     const std::string inner = "d" + std::to_string(k - 1);
-    doubled += ulog_format("d" + std::to_string(k) + ":" + inner + " a;" + inner + " b;");
+    std::string both = "d" + std::to_string(k);
+    both += ":" + inner + " a;" + inner + " b;";
+    doubled += ulog_format(both);
   }
   for (int k = 0; k < 3000; ++k) {
     const std::string name = "r" + std::to_string(k);
-    doubled += ulog_format(name + ":d14 a;d14 b;") + ulog_topic(1, name);
+    doubled += ulog_format(name + ":d14 a;d14 b;");
+    doubled += ulog_topic(1, name);
   }
   return {deep, wide, wide_within, self, doubled};
 }
