@@ -20,15 +20,15 @@ class StudioExplored : public StudioAsked {
     open_page(options);
   }
   Value slice(const std::string& axis, double at, int image, const std::string& more = "") {
-    const Value answer = ask(R"("type": "slice", "axis": ")" + axis + R"(", "at": )" +
-                             std::to_string(at) + R"(, "image": )" + std::to_string(image) + more);
+    Value answer = ask(R"("type": "slice", "axis": ")" + axis + R"(", "at": )" +
+                       std::to_string(at) + R"(, "image": )" + std::to_string(image) + more);
     EXPECT_EQ(answer.at("type"), Value("slice")) << to_json(answer);
     return answer;
   }
   Value voxel(const Eigen::Vector3d& p, int image, const std::string& more = "") {
-    const Value answer = ask(R"("type": "voxel", "position": [)" + std::to_string(p.x()) + "," +
-                             std::to_string(p.y()) + "," + std::to_string(p.z()) +
-                             R"(], "image": )" + std::to_string(image) + more);
+    Value answer = ask(R"("type": "voxel", "position": [)" + std::to_string(p.x()) + "," +
+                       std::to_string(p.y()) + "," + std::to_string(p.z()) + R"(], "image": )" +
+                       std::to_string(image) + more);
     EXPECT_EQ(answer.at("type"), Value("voxel")) << to_json(answer);
     return answer;
   }

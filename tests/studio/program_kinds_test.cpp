@@ -277,7 +277,7 @@ TEST_F(StudioKinds, AnExplorationTellsHowItsMapGrew) {
   EXPECT_FLOAT_EQ(edge, static_cast<float>(told.at("resolution").as_number()));
   ASSERT_EQ(bytes.size(), 12 + 16 * std::size_t{count});
   // By image, each in the middle of a voxel; the last image found some.
-  for (std::uint32_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     std::uint32_t image = 0;
     float middle[3];
     std::memcpy(middle, bytes.data() + 12 + 16 * i, sizeof middle);

@@ -235,27 +235,28 @@ std::vector<std::string> hostile_formats() {
   for (int k = 0; k < 40; ++k)
     deep += ulog_format("f" + std::to_string(k) + ":f" + std::to_string(k + 1) + "[65535] a;");
   deep += ulog_topic(1, "f0");
+  // A topic of one array.
+  const auto wide_topic = [](int k, const std::string& element) {
+    const std::string name = "w" + std::to_string(k);
+    return ulog_format(name + ":" + element + "[65535] " + std::string(200, 'a') + ";") +
+           ulog_topic(static_cast<std::uint16_t>(k), name);
+  };
   std::string wide = ulog_head(), wide_within = ulog_head() + ulog_format("e:uint8_t a;");
   for (int k = 0; k < 3000; ++k) {
-    const std::string name = "w" + std::to_string(k), rest = std::string(200, 'a') + ";";
-    const std::string topic = ulog_topic(static_cast<std::uint16_t>(k), name);
-    wide += ulog_format(name + ":uint8_t[65535] " + rest);
-    wide += topic;
-    wide_within += ulog_format(name + ":e[65535] " + rest);
-    wide_within += topic;
+    wide += wide_topic(k, "uint8_t");
+    wide_within += wide_topic(k, "e");
   }
   const std::string self = ulog_head() + ulog_format("a:a b;") + ulog_topic(1, "a");
   // Each is refused at its last field.
-  std::string doubled = ulog_head() + ulog_format("d0:uint8_t a;uint8_t b;");
-  for (int k = 1; k < 16; ++k) {
-    const std::string inner = "d" + std::to_string(k - 1);
-    std::string both = "d" + std::to_string(k);
-    both += ":" + inner + " a;" + inner + " b;";
-    doubled += ulog_format(both);
-  }
+  const auto two_of = [](const std::string& name, const std::string& inner) {
+    return ulog_format(name + ":" + inner + " a;" + inner + " b;");
+  };
+  std::string doubled = ulog_head() + two_of("d0", "uint8_t");
+  for (int k = 1; k < 16; ++k)
+    doubled += two_of("d" + std::to_string(k), "d" + std::to_string(k - 1));
   for (int k = 0; k < 3000; ++k) {
     const std::string name = "r" + std::to_string(k);
-    doubled += ulog_format(name + ":d14 a;d14 b;");
+    doubled += two_of(name, "d14");
     doubled += ulog_topic(1, name);
   }
   return {deep, wide, wide_within, self, doubled};
@@ -302,7 +303,8 @@ TEST(Ulog, HostileRecordsTakeNoTime) {
   for (int k = 0; k < 12000; ++k) dropouts += dropout;
   for (int k = 0; k < 1000000; ++k) heads += std::string("\x44\x44\x44", 3);
   for (int k = 0; k < 60; ++k) records += ulog_record('D', dropouts);
-  for (const std::string& rest : {heads, records, records + std::string(1, 'x') + heads}) {
+  const std::string within = records + 'x' + heads;
+  for (const std::string& rest : {heads, records, within}) {
     const std::clock_t began = std::clock();
     EXPECT_NE(refusal_of(*reader_named("ulog"), head + rest), "");
     EXPECT_LT(seconds_since(began), 5);
